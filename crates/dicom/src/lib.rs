@@ -1,0 +1,1 @@
+//! A folder of files to its CT series and their volumes.

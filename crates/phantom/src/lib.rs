@@ -1,0 +1,1 @@
+//! Bodies of known shape as CT volumes and DICOM series.

@@ -1,0 +1,1 @@
+//! A selected region of a bone surface as its own mesh.
