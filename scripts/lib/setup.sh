@@ -1,0 +1,65 @@
+# Functions that the scripts share: what a bare machine lacks is installed or named with its remedy.
+# Source it from a script that has done `set -euo pipefail`.
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+rust_minimum=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' "$root/Cargo.toml")
+
+say() { printf '\n== %s\n' "$*" >&2; }
+fail() { printf 'error: %s\n' "$*" >&2; exit 1; }
+
+# Rust at least as new as the workspace asks for.
+need_rust() {
+    local remedy="install it with rustup (https://rustup.rs), then: rustup update stable"
+    command -v cargo >/dev/null || fail "cargo is missing; $remedy"
+    local have
+    have=$(rustc --version | cut -d' ' -f2)
+    [ "$(printf '%s\n%s\n' "$rust_minimum" "$have" | sort -V | head -n1)" = "$rust_minimum" ] ||
+        fail "rustc $have is too old, $rust_minimum or newer is needed; $remedy"
+}
+
+# need_packages PACKAGE...: Debian packages, installed when this is root and they are missing.
+need_packages() {
+    command -v dpkg-query >/dev/null || return 0
+    local missing=() package
+    for package in "$@"; do
+        dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+    done
+    [ ${#missing[@]} -eq 0 ] && return 0
+    [ "$(id -u)" = 0 ] || fail "missing packages; run: sudo apt-get install ${missing[*]}"
+    say "installing ${missing[*]}"
+    apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends "${missing[@]}" >/dev/null
+}
+
+# find_python VERSION: prints a working interpreter of that version, or fails.
+find_python() {
+    local candidate
+    for candidate in "python$1" "$HOME"/.pyenv/versions/"$1".*/bin/python3 /usr/bin/"python$1"; do
+        if "$candidate" -c "import sys, venv; sys.exit('%d.%d' % sys.version_info[:2] != '$1')" 2>/dev/null; then
+            echo "$candidate"
+            return 0
+        fi
+    done
+    return 1
+}
+
+# any_python: prints the newest interpreter from 3.11 on that can make environments.
+any_python() {
+    local version
+    for version in 3.11 3.12 3.13 3.14; do find_python "$version" && return 0; done
+    fail "Python 3.11 or newer with venv is missing; run: apt-get install python3 python3-venv"
+}
+
+# venv DIR PYTHON REQUIREMENTS: a virtual environment with the requirements, made once and kept
+# until the requirements or the interpreter change.
+venv() {
+    local dir=$1 python=$2 requirements=$3 stamp
+    stamp="$("$python" --version) $(cksum <"$requirements")"
+    [ "$(cat "$dir/.stamp" 2>/dev/null)" = "$stamp" ] && return 0
+    say "setting up $(basename "$dir") with $("$python" --version)"
+    rm -rf "$dir"
+    "$python" -m venv "$dir"
+    "$dir/bin/python" -m pip install --quiet --disable-pip-version-check --upgrade pip
+    "$dir/bin/python" -m pip install --quiet --disable-pip-version-check -r "$requirements" ||
+        fail "pip could not install $requirements; is the network there?"
+    echo "$stamp" >"$dir/.stamp"
+}
