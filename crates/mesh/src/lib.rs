@@ -36,6 +36,6 @@ mod mesh;
 mod topology;
 
 pub use error::MeshError;
-pub use io::{MeshFormat, read_mesh, write_mesh};
+pub use io::{MeshFormat, check_target, read_mesh, write_mesh};
 pub use mesh::TriangleMesh;
 pub use topology::{Topology, check_topology};

@@ -39,11 +39,7 @@ pub(super) fn write(
     fill: impl FnOnce(&mut File) -> Result<(), Fault>,
 ) -> Result<(), MeshError> {
     let target = destination(path)?;
-    let folder = match target.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let mut temporary = create_beside(folder).map_err(|e| MeshError::writing(path, &e))?;
+    let mut temporary = create_beside(&target).map_err(|e| MeshError::writing(path, &e))?;
     match fill(temporary.as_file_mut()) {
         Ok(()) => {}
         Err(Fault::Io(error)) => return Err(MeshError::writing(path, &error)),
@@ -52,6 +48,13 @@ pub(super) fn write(
     temporary
         .persist(&target)
         .map_err(|e| MeshError::writing(path, &e.error))?;
+    Ok(())
+}
+
+/// Whether a file could be written at `path`.
+pub(super) fn probe(path: &Path) -> Result<(), MeshError> {
+    let target = destination(path)?;
+    create_beside(&target).map_err(|e| MeshError::writing(path, &e))?;
     Ok(())
 }
 
@@ -84,8 +87,12 @@ fn destination(path: &Path) -> Result<PathBuf, MeshError> {
     fs::canonicalize(path).map_err(|e| MeshError::writing(path, &e))
 }
 
-/// A temporary file in `folder` that others may read as far as the user's settings allow.
-fn create_beside(folder: &Path) -> io::Result<NamedTempFile> {
+/// A temporary file beside `target` that others may read as far as the user's settings allow.
+fn create_beside(target: &Path) -> io::Result<NamedTempFile> {
+    let folder = match target.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
     let mut builder = tempfile::Builder::new();
     builder.prefix(".bonemesh-");
     #[cfg(unix)]

@@ -45,6 +45,18 @@ impl MeshFormat {
     }
 }
 
+/// Tells now whether [`write_mesh`] could write `path`, so that long work is not lost at its end.
+///
+/// Makes a temporary file in the folder and takes it away again.
+///
+/// # Errors
+/// Those of [`write_mesh`].
+pub fn check_target(path: impl AsRef<Path>) -> Result<(), MeshError> {
+    let path = path.as_ref();
+    MeshFormat::of(path)?;
+    atomic::probe(path)
+}
+
 /// Reads an STL or PLY mesh and merges vertices of equal coordinates in file order.
 ///
 /// Vertex numbers: STL corners in the order of the file, PLY vertices in the order of the file
