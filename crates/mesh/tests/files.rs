@@ -11,7 +11,7 @@ mod shapes;
 use std::fs;
 use std::path::Path;
 
-use bonemesh_mesh::{MeshError, TriangleMesh, read_mesh, write_mesh};
+use bonemesh_mesh::{MeshError, TriangleMesh, check_target, read_mesh, write_mesh};
 use bonemesh_task::Task;
 use proptest::prelude::*;
 use shapes::{box_mesh, mesh, torus};
@@ -314,6 +314,23 @@ fn missing_files_and_folders_are_named() {
     let error = refused(&folder.path().join("no/such/a.stl"));
     assert!(matches!(error, MeshError::NoFolder { .. }));
     assert!(error.to_string().contains("no/such"));
+}
+
+#[test]
+fn a_target_is_checked_without_a_trace() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.stl");
+    check_target(&path).unwrap();
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    fs::write(&path, "old").unwrap();
+    check_target(&path).unwrap();
+    assert_eq!(fs::read(&path).unwrap(), b"old");
+    let refused = |name: &str| check_target(folder.path().join(name)).unwrap_err();
+    assert!(matches!(refused("no/a.stl"), MeshError::NoFolder { .. }));
+    assert!(matches!(
+        refused("a.obj"),
+        MeshError::UnknownExtension { .. }
+    ));
 }
 
 #[test]
