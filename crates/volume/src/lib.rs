@@ -21,12 +21,10 @@
 mod affine;
 mod crop;
 mod geometry;
-mod histogram;
 
 pub use affine::Affine;
 pub use crop::{CropBox, CropError};
 pub use geometry::Geometry;
-pub use histogram::Histogram;
 use ndarray::{Array3, s};
 
 /// What is wrong with a volume's parts.
