@@ -1,0 +1,110 @@
+//! Sizes that a compressed frame declares, looked up before a decoder believes them.
+
+/// What a JPEG, JPEG-LS or JPEG 2000 codestream says about itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Declared {
+    pub(crate) rows: u32,
+    pub(crate) columns: u32,
+    pub(crate) bits: u32,
+    pub(crate) components: u32,
+}
+
+/// Reads what the codestream declares; `None` where it declares nothing that makes sense.
+pub(crate) fn declared(bytes: &[u8]) -> Option<Declared> {
+    match bytes.get(..2)? {
+        [0xff, 0xd8] => jpeg(bytes),
+        [0xff, 0x4f] => jpeg_2000(bytes),
+        _ => None,
+    }
+}
+
+fn number(bytes: &[u8], at: usize, length: usize) -> Option<u32> {
+    let field = bytes.get(at..at + length)?;
+    Some(field.iter().fold(0, |n, b| n << 8 | u32::from(*b)))
+}
+
+/// JPEG and JPEG-LS: segments up to the frame header (ITU T.81 B.2.2, T.87 C.2.2).
+fn jpeg(bytes: &[u8]) -> Option<Declared> {
+    let mut at = 2;
+    loop {
+        let [0xff, marker] = *bytes.get(at..at + 2)? else {
+            return None;
+        };
+        match marker {
+            // A fill byte before a marker.
+            0xff => at += 1,
+            // All frame headers but those numbers that mean tables.
+            0xc0..=0xc3 | 0xc5..=0xc7 | 0xc9..=0xcb | 0xcd..=0xcf | 0xf7 => {
+                return Some(Declared {
+                    bits: number(bytes, at + 4, 1)?,
+                    rows: number(bytes, at + 5, 2)?,
+                    columns: number(bytes, at + 7, 2)?,
+                    components: number(bytes, at + 9, 1)?,
+                });
+            }
+            _ => at += 2 + number(bytes, at + 2, 2)? as usize,
+        }
+    }
+}
+
+/// JPEG 2000: the SIZ segment, which comes first (ITU T.800 A.5.1).
+fn jpeg_2000(bytes: &[u8]) -> Option<Declared> {
+    if bytes.get(2..4)? != [0xff, 0x51] {
+        return None;
+    }
+    let field = |i: usize| number(bytes, 8 + 4 * i, 4);
+    Some(Declared {
+        columns: field(0)?.checked_sub(field(2)?)?,
+        rows: field(1)?.checked_sub(field(3)?)?,
+        components: number(bytes, 40, 2)?,
+        bits: (number(bytes, 42, 1)? & 0x7f) + 1,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_frame_header_is_found_behind_other_segments() {
+        let mut bytes = vec![0xff, 0xd8, 0xff, 0xe0, 0, 4, 9, 9, 0xff];
+        bytes.extend([0xff, 0xc3, 0, 11, 16, 0x02, 0x00, 0x01, 0x80, 1, 0, 0x11, 0]);
+        let expected = Declared {
+            rows: 512,
+            columns: 384,
+            bits: 16,
+            components: 1,
+        };
+        assert_eq!(declared(&bytes), Some(expected));
+    }
+
+    #[test]
+    fn a_jpeg_2000_size_is_the_extent_without_the_offset() {
+        let mut bytes = vec![0xff, 0x4f, 0xff, 0x51, 0, 41, 0, 0];
+        for n in [74_u32, 64, 10, 0, 64, 64, 0, 0] {
+            bytes.extend(n.to_be_bytes());
+        }
+        bytes.extend([0, 1, 0x80 | 15, 1, 1]);
+        let expected = Declared {
+            rows: 64,
+            columns: 64,
+            bits: 16,
+            components: 1,
+        };
+        assert_eq!(declared(&bytes), Some(expected));
+    }
+
+    #[test]
+    fn nonsense_and_short_streams_declare_nothing() {
+        for bytes in [
+            &[][..],
+            &[0xff],
+            &[0xff, 0xd8],
+            &[0xff, 0xd8, 0xff, 0xc3, 0],
+            &[0xff, 0x4f, 0xff, 0x51, 0, 41],
+            b"hello",
+        ] {
+            assert_eq!(declared(bytes), None);
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! From the bytes of one file to its elements: preamble, file meta information, deflation.
+
+use std::fs::File;
+use std::io::{BufReader, Cursor, Read, Seek, SeekFrom};
+use std::path::Path;
+
+use dicom_dictionary_std::{tags, uids};
+use dicom_encoding::transfer_syntax::{Codec, TransferSyntax, TransferSyntaxIndex};
+use dicom_transfer_syntax_registry::TransferSyntaxRegistry;
+
+use crate::elements::Elements;
+use crate::error::FileError;
+
+/// Bytes fetched at once: most CT headers fit, so that a header costs one system call.
+const BUFFER: usize = 16 * 1024;
+
+/// Most bytes a deflated file may inflate to.
+const MAX_INFLATED: u64 = 1 << 30;
+
+static REGISTRY: TransferSyntaxRegistry = TransferSyntaxRegistry;
+
+/// A file's elements and the form they are in.
+pub(crate) struct Parsed {
+    pub(crate) elements: Elements,
+    pub(crate) syntax: &'static TransferSyntax,
+    /// Where the data set begins in the file.
+    pub(crate) start: u64,
+    /// Where the data set ends: the file's size, or the inflated size.
+    pub(crate) size: u64,
+}
+
+/// The transfer syntax of a UID.
+pub(crate) fn syntax(uid: &str) -> Result<&'static TransferSyntax, FileError> {
+    REGISTRY
+        .get(uid)
+        .ok_or_else(|| FileError::UnknownSyntax(uid.to_owned()))
+}
+
+/// Reads the header of one file: everything before its pixels.
+pub(crate) fn parse(path: &Path) -> Result<Parsed, FileError> {
+    // Opening a pipe would wait for somebody to write into it.
+    let metadata = std::fs::metadata(path)?;
+    if !metadata.is_file() {
+        return Err(FileError::Special);
+    }
+    let size = metadata.len();
+    if size == 0 {
+        return Err(FileError::Empty);
+    }
+    let mut file = BufReader::with_capacity(BUFFER, File::open(path)?);
+    let (syntax, start) = beginning(&mut file, size)?;
+    if let Codec::Dataset(_) = syntax.codec() {
+        let inflated = inflate(file, syntax, start)?;
+        let size = inflated.len() as u64;
+        let (elements, _) = Elements::read(&mut Cursor::new(inflated), syntax, 0, size, None)?;
+        return Ok(Parsed {
+            elements,
+            syntax,
+            start,
+            size,
+        });
+    }
+    let (elements, _) = Elements::read(&mut file, syntax, start, size, None)?;
+    Ok(Parsed {
+        elements,
+        syntax,
+        start,
+        size,
+    })
+}
+
+/// The whole data set of a deflated file; `start` is where it begins.
+pub(crate) fn inflate<S: Read + Seek>(
+    mut source: S,
+    syntax: &TransferSyntax,
+    start: u64,
+) -> Result<Vec<u8>, FileError> {
+    let Codec::Dataset(Some(adapter)) = syntax.codec() else {
+        return Err(FileError::Codec(format!(
+            "{} ({})",
+            syntax.name(),
+            syntax.uid()
+        )));
+    };
+    source.seek(SeekFrom::Start(start))?;
+    let source: Box<dyn Read + '_> = Box::new(source);
+    let mut inflated = Vec::new();
+    adapter
+        .adapt_reader(source)
+        .take(MAX_INFLATED)
+        .read_to_end(&mut inflated)
+        .map_err(|_| FileError::Header("the deflated data are damaged"))?;
+    Ok(inflated)
+}
+
+/// Finds the transfer syntax and the place where the data set begins, and goes there.
+fn beginning(
+    file: &mut BufReader<File>,
+    size: u64,
+) -> Result<(&'static TransferSyntax, u64), FileError> {
+    let mut head = Vec::with_capacity(132);
+    file.by_ref().take(132).read_to_end(&mut head)?;
+    let meta_at = if head.len() == 132 && head.ends_with(b"DICM") {
+        132
+    } else if head.starts_with(b"DICM") {
+        4
+    } else if head.starts_with(&[2, 0]) {
+        0
+    } else {
+        let uid = bare_syntax(&head).ok_or(FileError::NotDicom)?;
+        file.seek(SeekFrom::Start(0))?;
+        return Ok((syntax(uid)?, 0));
+    };
+    file.seek(SeekFrom::Start(meta_at))?;
+    let explicit = syntax(uids::EXPLICIT_VR_LITTLE_ENDIAN)?;
+    let (meta, start) = Elements::read(file, explicit, meta_at, size, Some(2))
+        .map_err(|_| FileError::Header("file meta information"))?;
+    let uid = meta
+        .text(tags::TRANSFER_SYNTAX_UID)
+        .ok_or(FileError::Header("no transfer syntax"))?;
+    Ok((syntax(&uid)?, start))
+}
+
+/// The transfer syntax of a data set without preamble and file meta information.
+///
+/// Such a data set begins with a short element of group 0008, which is all that tells it from
+/// any other file; a VR of two capitals after the tag makes it explicit.
+fn bare_syntax(head: &[u8]) -> Option<&'static str> {
+    let (tag, rest) = head.split_at_checked(4)?;
+    let length: [u8; 4] = rest.get(..4)?.try_into().ok()?;
+    if tag[..2] != [8, 0] || tag[3] != 0 {
+        return None;
+    }
+    if length[..2].iter().all(u8::is_ascii_uppercase) {
+        return Some(uids::EXPLICIT_VR_LITTLE_ENDIAN);
+    }
+    (u32::from_le_bytes(length) < 1024).then_some(uids::IMPLICIT_VR_LITTLE_ENDIAN)
+}

@@ -1,0 +1,222 @@
+//! A series as reports show it, and as the pixels are read from it.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use bonemesh_volume::{Affine, Geometry};
+use serde::Serialize;
+
+use crate::error::DicomError;
+use crate::frame::is_readable;
+use crate::group::Stack;
+use crate::orientation;
+use crate::slice::Slice;
+use crate::stack::{Evenness, Grid};
+use crate::vector::{difference, dot, length, scaled};
+
+/// Sideways deviation from a straight stack, in pixels, that is reported.
+const CROOKED: f64 = 0.5;
+
+/// Deviation of slice locations from positions (mm) that is rounding.
+const LOCATION_MM: f64 = 0.02;
+
+/// Slices that make one volume: what is known before any pixel is decoded.
+///
+/// Nothing in it says who the patient is.
+#[derive(Clone, Debug, Serialize)]
+pub struct Series {
+    /// Number in its [`Scan`](crate::Scan), 1 is the largest.
+    pub number: usize,
+    /// Series Instance UID; several volumes of one series share it. Empty where the files have none.
+    pub uid: String,
+    /// What the scanner's operator called it.
+    pub description: String,
+    /// `CT`, or empty where the files do not say.
+    pub modality: String,
+    /// Slices of the volume, missing ones included.
+    pub slices: usize,
+    /// Slices that the files hold.
+    pub slices_found: usize,
+    /// Pixels in a column.
+    pub rows: usize,
+    /// Pixels in a row.
+    pub columns: usize,
+    /// Distance between columns, between rows, and between slices along their normal (mm).
+    pub spacing_mm: [f64; 3],
+    /// Voxel indices (column, row, slice) to patient millimetres (LPS), voxel centres.
+    pub patient_from_voxel: [[f64; 4]; 4],
+    /// Plane, tilt, and where columns, rows and slices are counted to, in words.
+    pub orientation: String,
+    /// How the files hold the pixels.
+    pub transfer_syntax: String,
+    /// Memory that the volume takes (bytes).
+    pub estimated_memory_bytes: u64,
+    /// What a user should know: missing, uneven, doubled or cut-off slices, and the like.
+    pub warnings: Vec<String>,
+    /// The files, in the order of their slices.
+    pub files: Vec<PathBuf>,
+    #[serde(skip)]
+    pub(crate) stack: Vec<Slice>,
+    #[serde(skip)]
+    pub(crate) grid: Grid,
+}
+
+impl Series {
+    /// A series from a stack of at least two slices.
+    pub(crate) fn new(stack: Stack) -> Result<Self, DicomError> {
+        let Stack {
+            slices,
+            notes: mut warnings,
+            ..
+        } = stack;
+        let along: Vec<f64> = slices.iter().map(|s| s.along_mm).collect();
+        let (grid, evenness) = Grid::new(&along);
+        if evenness != Evenness::Even {
+            warnings.push(evenness.to_string());
+        }
+        warnings.extend(observations(&slices));
+        let header = &slices[0].header;
+        let (rows, columns) = (header.layout.rows, header.layout.columns);
+        let voxels = (grid.count * rows * columns) as u64;
+        let bytes = if slices.iter().all(Slice::is_whole) {
+            2
+        } else {
+            4
+        };
+        let mut files: Vec<PathBuf> = slices.iter().map(|s| s.header.path.clone()).collect();
+        files.dedup();
+        let affine = affine(&slices, &grid, 0);
+        let geometry = Geometry::new([grid.count, rows, columns], affine)?;
+        let [x, y] = slices[0].place().orientation;
+        let step = affine.axis(2);
+        let tilt = (dot(step, geometry.slice_normal()) / length(step)).clamp(-1.0, 1.0);
+        Ok(Self {
+            number: 0,
+            uid: header.series_uid.clone(),
+            description: header.description.clone(),
+            modality: header.modality.clone(),
+            slices: grid.count,
+            slices_found: slices.len(),
+            rows,
+            columns,
+            spacing_mm: geometry.spacing_mm(),
+            patient_from_voxel: affine.matrix(),
+            orientation: orientation::in_words(
+                x,
+                y,
+                geometry.slice_normal(),
+                tilt.acos().to_degrees(),
+            ),
+            transfer_syntax: syntaxes(&slices),
+            estimated_memory_bytes: voxels * bytes,
+            warnings,
+            files,
+            stack: slices,
+            grid,
+        })
+    }
+
+    /// The geometry of `count` slices from place `begin` of the grid.
+    pub(crate) fn geometry(&self, begin: usize, count: usize) -> Result<Geometry, DicomError> {
+        let affine = affine(&self.stack, &self.grid, begin);
+        let geometry = Geometry::new([count, self.rows, self.columns], affine)?;
+        Ok(match locations(&self.stack) {
+            Some(first) => geometry
+                .with_first_slice_location_mm(first + self.grid.at(begin) - self.stack[0].along_mm),
+            None => geometry,
+        })
+    }
+
+    /// One line that tells this series from the others.
+    pub(crate) fn in_words(&self) -> String {
+        let description = if self.description.is_empty() {
+            "no description"
+        } else {
+            &self.description
+        };
+        format!(
+            "{} = {description}, {} slices of {} x {}, {:.2} mm apart ({})",
+            self.number, self.slices, self.columns, self.rows, self.spacing_mm[2], self.uid
+        )
+    }
+}
+
+/// The affine map of a stack: in-plane axes from the orientation, the step between slices from
+/// the positions themselves, so that a tilted gantry's shear is in it.
+fn affine(slices: &[Slice], grid: &Grid, begin: usize) -> Affine {
+    let (first, last) = (&slices[0], &slices[slices.len() - 1]);
+    let place = first.place();
+    let [dx, dy] = place.spacing;
+    let [x, y] = place.orientation;
+    let (from, to) = (place.position, last.place().position);
+    let per_mm = scaled(difference(to, from), 1.0 / (last.along_mm - first.along_mm));
+    let axis = scaled(per_mm, grid.step_mm);
+    let offset = scaled(axis, begin as f64);
+    let origin = std::array::from_fn(|i| from[i] + offset[i]);
+    Affine::from_axes(scaled(x, dx), scaled(y, dy), axis, origin)
+}
+
+/// The first slice's location, if the locations run as the positions do.
+fn locations(slices: &[Slice]) -> Option<f64> {
+    let first = slices.first()?;
+    let start = first.place().slice_location?;
+    let agrees = |s: &Slice| {
+        let location = s.place().slice_location?;
+        let difference = (location - start) - (s.along_mm - first.along_mm);
+        (difference.abs() <= LOCATION_MM).then_some(())
+    };
+    slices.iter().try_for_each(agrees).map(|()| start)
+}
+
+fn syntaxes(slices: &[Slice]) -> String {
+    let names: BTreeSet<&str> = slices
+        .iter()
+        .map(|s| s.header.storage.syntax_name)
+        .collect();
+    names.into_iter().collect::<Vec<_>>().join(" and ")
+}
+
+/// What a user should know about the slices themselves.
+fn observations(slices: &[Slice]) -> Vec<String> {
+    let mut found = Vec::new();
+    if slices.iter().any(|s| s.header.is_placed_by_location) {
+        found.push(
+            "no Image Position Patient: slices are placed by Slice Location, sideways place unknown"
+                .to_owned(),
+        );
+    }
+    if slices[0].header.modality.is_empty() {
+        found.push("the files do not say that they are CT; values may not be HU".to_owned());
+    }
+    let sideways = sideways_mm(slices);
+    let [dx, dy] = slices[0].place().spacing;
+    if sideways > CROOKED * dx.min(dy) {
+        found.push(format!(
+            "slices are shifted sideways by up to {sideways:.2} mm against a straight stack; the shift is ignored"
+        ));
+    }
+    let unreadable: BTreeSet<(&str, &str)> = slices
+        .iter()
+        .map(|s| (s.header.storage.syntax_name, s.header.storage.syntax_uid))
+        .filter(|(_, uid)| !is_readable(uid))
+        .collect();
+    for (name, uid) in unreadable {
+        found.push(format!("pixels stored as {name} ({uid}) cannot be read"));
+    }
+    found
+}
+
+/// Largest distance of a slice's corner from the line through the first and the last one's.
+fn sideways_mm(slices: &[Slice]) -> f64 {
+    let (first, last) = (&slices[0], &slices[slices.len() - 1]);
+    let from = first.place().position;
+    let line = scaled(
+        difference(last.place().position, from),
+        1.0 / (last.along_mm - first.along_mm),
+    );
+    let off = |s: &Slice| {
+        let expected = scaled(line, s.along_mm - first.along_mm);
+        length(difference(difference(s.place().position, from), expected))
+    };
+    slices.iter().map(off).fold(0.0, f64::max)
+}
