@@ -1,62 +1,88 @@
-//! Exact 3D Delaunay tetrahedra and alpha complexes.
+//! The Delaunay tetrahedra of points in space, exactly: one answer for one set of points.
+//!
+//! Promise, for any points that span space (lattices, planes, spheres of points, duplicates):
+//! - every cell `[a, b, c, d]` is positively oriented, `det[b - a, c - a, d - a] > 0`, exactly;
+//!   no cell is flat;
+//! - no point lies inside the circumsphere of a cell, exactly;
+//! - the cells fill the convex hull and nothing else;
+//! - the result depends on the coordinates alone: not on the order of the input but for the
+//!   numbering, not on the number of threads;
+//! - the alpha complex, found in parallel slabs, is exactly the part of that triangulation with
+//!   a circumradius of at most alpha, and its boundary is closed and faces outward.
+//!
+//! Limits: at most 2^30 tetrahedra at a time; lattice coordinates span at most 32,767 steps
+//! along an axis and their metric is rounded to `2^-40` of its largest entry; free coordinates
+//! are 0 or between 1e-45 and 1e55 in size. Circumradii are doubles with a relative error below
+//! 1e-7 (typically 1e-15); a free cell too flat for even that (its volume under about 1e-24 of
+//! the cube of its size) belongs to no finite alpha complex. A whole triangulation is built by
+//! one thread, an alpha complex by as many as it has slabs.
+//!
+//! ```
+//! use bonemesh_delaunay::{Points, alpha_complex, tetrahedralize};
+//! use bonemesh_task::Task;
+//!
+//! // The corners of a voxel of 0.5 x 0.5 x 1 mm: eight points of one sphere.
+//! let corners: Vec<[i32; 3]> = (0..8).map(|i| [i & 1, i >> 1 & 1, i >> 2]).collect();
+//! let gram = [[0.25, 0.0, 0.0], [0.0, 0.25, 0.0], [0.0, 0.0, 1.0]];
+//! let points = Points::Lattice { coordinates: &corners, gram };
+//!
+//! let whole = tetrahedralize(points, &Task::default())?;
+//! assert_eq!(whole.volume_mm3(points), 0.25);
+//! assert_eq!(whole.boundary().len(), 12);
+//!
+//! let none = alpha_complex(points, 0.6, &Task::default())?;
+//! assert!(none.cells.is_empty()); // the sphere's radius is 0.612 mm
+//! # Ok::<(), bonemesh_delaunay::DelaunayError>(())
+//! ```
+//!
+//! # How it works
+//! 1. `points`: distinct points are sorted by z, y, x; a point's place is its rank.
+//! 2. `slabs`: space is cut across its longest extent; each slab takes the points within alpha
+//!    of it, which makes it right about every cell that it will keep. (`tetrahedralize` has one
+//!    slab.)
+//! 3. `hilbert`: points are put in random rounds, each in the order of a Hilbert curve.
+//! 4. `locate`: from the last cell, walk to the cell that holds the next point.
+//! 5. `insert`: the cells whose circumsphere has the point inside give way to cells that join
+//!    the point to the cavity's rim. A ghost vertex at infinity makes the outside cells, too.
+//! 6. `predicates`: integers decide on a lattice, adaptive doubles on free points. A point
+//!    exactly on a circumsphere is decided by an infinitesimal raise of each point's *lift*,
+//!    larger for higher ranks, so all ties together are those of one true triangulation;
+//!    positions are not perturbed, which would leave flat cells.
+//! 7. `alpha`: cells are kept by circumradius, sorted, and named by the input's indices.
+//! 8. `boundary`: facets of one cell only, outward.
+//!
+//! # References
+//! - A. Bowyer, *Computing Dirichlet tessellations*, 1981; D. F. Watson, *Computing the
+//!   n-dimensional Delaunay tessellation*, 1981.
+//! - H. Edelsbrunner, E. P. Muecke, *Three-dimensional alpha shapes*, 1994.
+//! - O. Devillers, M. Teillaud, *Perturbations for Delaunay and weighted Delaunay 3D
+//!   triangulations*, 2011.
+//! - J. R. Shewchuk, *Adaptive precision floating-point arithmetic and fast robust geometric
+//!   predicates*, 1997.
+//! - N. Amenta, S. Choi, G. Rote, *Incremental constructions con BRIO*, 2003; C. H. Hamilton,
+//!   *Compact Hilbert indices*, 2006.
+//! - C. Marot, J. Pellerin, J.-F. Remacle, *One machine, one minute, three billion tetrahedra*,
+//!   2019.
 
-use bonemesh_task::{Cancelled, Task};
+mod alpha;
+mod boundary;
+mod error;
+mod hilbert;
+mod insert;
+mod locate;
+mod points;
+mod predicates;
+mod slabs;
+mod triangulation;
 
-/// What cannot be tetrahedralised, and the remedy.
-#[non_exhaustive]
-#[derive(Debug, thiserror::Error)]
-pub enum DelaunayError {
-    /// Stopped on request.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-}
+pub use alpha::{alpha_complex, tetrahedralize};
+pub use error::DelaunayError;
+pub use points::Points;
 
-/// The points to tetrahedralise.
-#[derive(Clone, Copy, Debug)]
-pub enum Points<'a> {
-    /// Integer coordinates with the metric (Gram matrix of the lattice axes, mm^2).
-    Lattice {
-        /// Coordinates of each point.
-        coordinates: &'a [[i32; 3]],
-        /// Squared length of `v` is `v^T gram v`.
-        gram: [[f64; 3]; 3],
-    },
-    /// Free points in mm.
-    Free(&'a [[f64; 3]]),
-}
-
-/// Tetrahedra over indices of the input points, each positively oriented in the input's coordinates.
+/// Tetrahedra over indices of the input points, each positively oriented in the input's
+/// coordinates: `det[b - a, c - a, d - a] > 0` for a cell `[a, b, c, d]`.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Tetrahedra {
     /// Four point indices a cell.
     pub cells: Vec<[u32; 4]>,
-}
-
-/// The Delaunay tetrahedra of `points`.
-///
-/// # Errors
-/// see DelaunayError
-pub fn tetrahedralize(points: Points<'_>, task: &Task) -> Result<Tetrahedra, DelaunayError> {
-    let _ = (points, task);
-    todo!()
-}
-
-/// The Delaunay tetrahedra with circumradius at most `alpha` (mm).
-///
-/// # Errors
-/// see DelaunayError
-pub fn alpha_complex(
-    points: Points<'_>,
-    alpha: f64,
-    task: &Task,
-) -> Result<Tetrahedra, DelaunayError> {
-    let _ = (points, alpha, task);
-    todo!()
-}
-
-impl Tetrahedra {
-    /// Triangles that bound the cells, outward-oriented (in the input's coordinates).
-    pub fn boundary(&self) -> Vec<[u32; 3]> {
-        todo!()
-    }
 }

@@ -1,0 +1,155 @@
+//! The facets that only one cell has.
+
+use rayon::prelude::*;
+
+use crate::{Points, Tetrahedra};
+
+/// Facets sorted by one thread at a time.
+const FACETS_PER_CHUNK: usize = 1 << 14;
+
+impl Tetrahedra {
+    /// Triangles that bound the cells: the facets of exactly one cell, counter-clockwise seen
+    /// from outside in the input's coordinates, sorted by their vertices, the smallest first.
+    ///
+    /// The boundary of an alpha complex may touch itself in edges and vertices.
+    pub fn boundary(&self) -> Vec<[u32; 3]> {
+        let largest = self.cells.as_flattened().iter().copied().max().unwrap_or(0);
+        // The sort below has a place for every index and 31 bits for each: should the indices
+        // be sparse or larger, number the used ones first.
+        if largest >> 31 != 0 || largest as usize > 64 * (self.cells.len() + 1024) {
+            let mut used = self.cells.as_flattened().to_vec();
+            used.par_sort_unstable();
+            used.dedup();
+            let place = |v: u32| used.partition_point(|&u| u < v) as u32;
+            let cells = self.cells.par_iter().map(|c| c.map(place)).collect();
+            let mut triangles = Self { cells }.boundary();
+            for v in triangles.as_flattened_mut() {
+                *v = used[*v as usize];
+            }
+            return triangles;
+        }
+        single_facets(&self.cells, largest as usize + 1)
+    }
+
+    /// The cells' total volume in mm^3: exact on a lattice but for one last rounding.
+    pub fn volume_mm3(&self, points: Points<'_>) -> f64 {
+        match points {
+            Points::Lattice { coordinates, gram } => {
+                let at = |v: u32| coordinates[v as usize].map(i128::from);
+                let six: i128 = self.cells.par_iter().map(|c| determinant(c.map(at))).sum();
+                let rows = [[0.0; 3], gram[0], gram[1], gram[2]];
+                six as f64 * determinant(rows).sqrt() / 6.0
+            }
+            Points::Free(free) => {
+                let at = |v: u32| free[v as usize];
+                let six = self.cells.par_iter().map(|c| determinant(c.map(at)));
+                bonemesh_task::chunked_sum(&six.collect::<Vec<f64>>()) / 6.0
+            }
+        }
+    }
+}
+
+/// Six times the signed volume of a tetrahedron.
+fn determinant<T>([a, b, c, d]: [[T; 3]; 4]) -> T
+where
+    T: Copy + std::ops::Add<Output = T> + std::ops::Sub<Output = T> + std::ops::Mul<Output = T>,
+{
+    let [u, v, w] = [b, c, d].map(|p| [0, 1, 2].map(|k| p[k] - a[k]));
+    u[0] * (v[1] * w[2] - v[2] * w[1])
+        + u[1] * (v[2] * w[0] - v[0] * w[2])
+        + u[2] * (v[0] * w[1] - v[1] * w[0])
+}
+
+/// The facets of a positive cell, outward.
+#[inline]
+fn facets([a, b, c, d]: [u32; 4]) -> [[u32; 3]; 4] {
+    [[b, c, d], [a, d, c], [a, b, d], [a, c, b]]
+}
+
+/// A facet's smallest vertex, and its others as a key: in ascending order, the last bit telling
+/// whether that turns the facet over.
+#[inline]
+fn key([a, b, c]: [u32; 3]) -> (u32, u64) {
+    let (first, p, q) = if a < b && a < c {
+        (a, b, c)
+    } else if b < c {
+        (b, c, a)
+    } else {
+        (c, a, b)
+    };
+    let pack = |low: u32, high: u32| u64::from(low) << 32 | u64::from(high) << 1;
+    let key = if p < q { pack(p, q) } else { pack(q, p) | 1 };
+    (first, key)
+}
+
+/// Facets that occur once: put in bins by their smallest vertex, then sorted bin by bin.
+fn single_facets(cells: &[[u32; 4]], vertices: usize) -> Vec<[u32; 3]> {
+    let mut ends = vec![0usize; vertices + 1];
+    for &cell in cells {
+        for facet in facets(cell) {
+            ends[key(facet).0 as usize] += 1;
+        }
+    }
+    let mut total = 0;
+    for end in &mut ends {
+        let count = *end;
+        *end = total;
+        total += count;
+    }
+    // Where each bin starts, until it is filled; then where it ends.
+    let mut keys = vec![0u64; total];
+    for &cell in cells {
+        for facet in facets(cell) {
+            let (first, key) = key(facet);
+            let place = &mut ends[first as usize];
+            keys[*place] = key;
+            *place += 1;
+        }
+    }
+    let bins = split_into_chunks(&mut keys, &ends);
+    let chunks: Vec<Vec<[u32; 3]>> = bins
+        .into_par_iter()
+        .map(|(first_bin, ends, keys)| singles_of_chunk(first_bin, ends, keys))
+        .collect();
+    chunks.concat()
+}
+
+/// Consecutive bins: the first one's number, the ends of all, their keys.
+type Bins<'a> = (usize, Vec<usize>, &'a mut [u64]);
+
+/// Cuts the keys between bins into pieces of about [`FACETS_PER_CHUNK`].
+fn split_into_chunks<'a>(mut keys: &'a mut [u64], ends: &[usize]) -> Vec<Bins<'a>> {
+    let mut chunks = Vec::new();
+    let (mut first_bin, mut start) = (0, 0);
+    for (bin, &end) in ends.iter().enumerate() {
+        if end - start >= FACETS_PER_CHUNK || bin + 1 == ends.len() {
+            let (head, tail) = keys.split_at_mut(end - start);
+            let local = ends[first_bin..=bin].iter().map(|e| e - start).collect();
+            chunks.push((first_bin, local, head));
+            keys = tail;
+            (first_bin, start) = (bin + 1, end);
+        }
+    }
+    chunks
+}
+
+fn singles_of_chunk(first_bin: usize, ends: Vec<usize>, keys: &mut [u64]) -> Vec<[u32; 3]> {
+    let mut singles = Vec::new();
+    let mut start = 0;
+    for (bin, end) in (first_bin as u32..).zip(ends) {
+        let keys = &mut keys[start..end];
+        start = end;
+        keys.sort_unstable();
+        for same in keys.chunk_by(|a, b| a >> 1 == b >> 1) {
+            if let &[key] = same {
+                let (low, high) = ((key >> 32) as u32, (key as u32) >> 1);
+                singles.push(if key & 1 == 0 {
+                    [bin, low, high]
+                } else {
+                    [bin, high, low]
+                });
+            }
+        }
+    }
+    singles
+}

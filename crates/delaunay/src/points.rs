@@ -1,0 +1,172 @@
+//! From the caller's points to distinct sites in the order of their coordinates.
+
+use rayon::prelude::*;
+
+use crate::DelaunayError;
+use crate::predicates::{AnyLattice, FreeKernel, Kernel, Site};
+use crate::triangulation::{Span, span};
+
+/// Smallest size of a free coordinate other than 0: the fifth power of its last bit is a double.
+const SMALLEST: f64 = 1e-45;
+/// Largest size of a free coordinate: an in-sphere determinant stays finite.
+const LARGEST: f64 = 1e55;
+
+/// The points to tetrahedralise.
+#[derive(Clone, Copy, Debug)]
+pub enum Points<'a> {
+    /// Integer coordinates with the metric of their axes.
+    Lattice {
+        /// Coordinates of each point; they may span up to 32,767 steps along each axis.
+        coordinates: &'a [[i32; 3]],
+        /// The squared length in mm of `v` is `v^T gram v`: symmetric, positive definite. It is
+        /// rounded to `2^-40` of its largest entry, and exact in what follows.
+        gram: [[f64; 3]; 3],
+    },
+    /// Free points in mm.
+    Free(&'a [[f64; 3]]),
+}
+
+impl Points<'_> {
+    /// How many points there are.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Lattice { coordinates, .. } => coordinates.len(),
+            Self::Free(points) => points.len(),
+        }
+    }
+
+    /// Whether there is no point.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// Distinct points, sorted by z, then y, then x; a site's rank is its place here.
+pub(crate) struct Sites<K: Kernel> {
+    pub(crate) kernel: K,
+    pub(crate) sorted: Vec<Site<K::Scalar>>,
+    /// Index in the input of each site; of equal points, the lowest.
+    pub(crate) input: Vec<u32>,
+}
+
+/// [`Sites`] of any kind.
+pub(crate) enum AnySites {
+    Upright(Sites<crate::predicates::LatticeKernel<false>>),
+    Tilted(Sites<crate::predicates::LatticeKernel<true>>),
+    Free(Sites<FreeKernel>),
+}
+
+impl AnySites {
+    /// Checks the points, and that they span space.
+    pub(crate) fn new(points: Points<'_>) -> Result<Self, DelaunayError> {
+        // Positions, cells and this crate's sort keys hold indices in 32 bits.
+        if points.len() > crate::triangulation::CELL_LIMIT {
+            return Err(DelaunayError::TooMany {
+                points: points.len(),
+                limit: crate::triangulation::CELL_LIMIT,
+            });
+        }
+        match points {
+            Points::Lattice { coordinates, gram } => {
+                let (low, extent) = bounds(coordinates);
+                let kernel = AnyLattice::new(gram, extent)?;
+                let sorted = sorted_lattice(coordinates, low);
+                Ok(match kernel {
+                    AnyLattice::Upright(k) => Self::Upright(Sites::new(k, sorted, points)?),
+                    AnyLattice::Tilted(k) => Self::Tilted(Sites::new(k, sorted, points)?),
+                })
+            }
+            Points::Free(free) => {
+                let sorted = sorted_free(free)?;
+                Ok(Self::Free(Sites::new(FreeKernel, sorted, points)?))
+            }
+        }
+    }
+}
+
+/// Distinct coordinates in order, each with its lowest index in the input.
+type Sorted<S> = Vec<([S; 3], u32)>;
+
+/// Smallest coordinates, and the largest minus the smallest.
+fn bounds(coordinates: &[[i32; 3]]) -> ([i32; 3], [i64; 3]) {
+    let first = coordinates.first().copied().unwrap_or_default();
+    let (low, high) = coordinates.iter().fold((first, first), |(low, high), p| {
+        (
+            [0, 1, 2].map(|k| p[k].min(low[k])),
+            [0, 1, 2].map(|k| p[k].max(high[k])),
+        )
+    });
+    let extent = [0, 1, 2].map(|k| i64::from(high[k]) - i64::from(low[k]));
+    (low, extent)
+}
+
+/// Coordinates from `low` on (they span less than 2^15).
+fn sorted_lattice(coordinates: &[[i32; 3]], low: [i32; 3]) -> Sorted<i32> {
+    let mut keys: Vec<(u64, u32)> = coordinates
+        .par_iter()
+        .zip(0u32..coordinates.len() as u32)
+        .map(|(p, i)| {
+            let [x, y, z] = [0, 1, 2].map(|k| p[k].abs_diff(low[k]));
+            (u64::from(z) << 30 | u64::from(y) << 15 | u64::from(x), i)
+        })
+        .collect();
+    // Clouds come from slices row by row, so they are sorted already.
+    if !keys.is_sorted() {
+        keys.par_sort_unstable();
+    }
+    keys.dedup_by_key(|(key, _)| *key);
+    let coordinate = |key: u64, shift: u32| (key >> shift & 0x7fff) as i32;
+    keys.into_par_iter()
+        .map(|(key, i)| ([0, 15, 30].map(|shift| coordinate(key, shift)), i))
+        .collect()
+}
+
+fn sorted_free(points: &[[f64; 3]]) -> Result<Sorted<f64>, DelaunayError> {
+    let sound = |v: f64| v == 0.0 || (SMALLEST..=LARGEST).contains(&v.abs());
+    for (point, p) in points.iter().enumerate() {
+        if let Some(&value) = p.iter().find(|&&v| !sound(v)) {
+            return Err(DelaunayError::Coordinate { point, value });
+        }
+    }
+    // Adding 0 makes -0 and 0 one coordinate.
+    let mut sorted: Sorted<f64> = points
+        .iter()
+        .zip(0..)
+        .map(|(p, i)| (p.map(|v| v + 0.0), i))
+        .collect();
+    sorted.par_sort_unstable_by(|(a, i), (b, j)| {
+        let order = |k: usize| a[k].total_cmp(&b[k]);
+        order(2).then(order(1)).then(order(0)).then(i.cmp(j))
+    });
+    sorted.dedup_by_key(|(p, _)| p.map(f64::to_bits));
+    Ok(sorted)
+}
+
+impl<K: Kernel> Sites<K> {
+    fn new(
+        kernel: K,
+        sorted: Sorted<K::Scalar>,
+        points: Points<'_>,
+    ) -> Result<Self, DelaunayError> {
+        let distinct = sorted.len();
+        if distinct < 4 {
+            let points = points.len();
+            return Err(DelaunayError::TooFew { points, distinct });
+        }
+        match span(&kernel, sorted.iter().map(|(at, _)| at)) {
+            Span::Space(_) => {}
+            Span::Plane => return Err(DelaunayError::Coplanar { distinct }),
+            Span::Line | Span::Point => return Err(DelaunayError::Collinear { distinct }),
+        }
+        let (sorted, input) = sorted
+            .into_iter()
+            .zip(0..)
+            .map(|((at, input), rank)| (Site { at, rank }, input))
+            .unzip();
+        Ok(Self {
+            kernel,
+            sorted,
+            input,
+        })
+    }
+}

@@ -1,0 +1,219 @@
+//! The triangulation as it grows: cells, their neighbours, and the ghost outside the hull.
+//!
+//! Invariants between two insertions:
+//! - the finite cells are the Delaunay tetrahedra of the points so far under the perturbed lift,
+//!   each positively oriented;
+//! - every hull facet has one more cell, made of it and the [`GHOST`], so that every facet of
+//!   every cell has a neighbour; replacing its ghost by a point strictly outside the facet gives
+//!   a positive orientation;
+//! - neighbours name each other: facet `f` of cell `c` (the one opposite vertex `f`) is written
+//!   `4 c + f`, and `neighbours[f]` is the same facet seen from the other side.
+
+use bonemesh_task::Task;
+
+use crate::DelaunayError;
+use crate::hilbert::insertion_order;
+use crate::insert::Cavity;
+use crate::predicates::{Kernel, Site};
+
+/// The vertex at infinity.
+pub(crate) const GHOST: u32 = 0;
+/// Marks a cell that is not in use, in place of its first vertex.
+pub(crate) const UNUSED: u32 = u32::MAX;
+/// The most cells that facets can name.
+pub(crate) const CELL_LIMIT: usize = 1 << 30;
+/// New cells between two looks at the cancel switch: a few milliseconds.
+const CELLS_PER_CHECK: usize = 1 << 14;
+
+/// A tetrahedron: its vertices, and facet `f` seen from the other side for each `f`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cell {
+    pub(crate) vertices: [u32; 4],
+    pub(crate) neighbours: [u32; 4],
+}
+
+impl Cell {
+    /// The place of the ghost among the vertices, if the cell is infinite.
+    #[inline]
+    pub(crate) fn ghost(&self) -> Option<usize> {
+        self.vertices.iter().position(|&v| v == GHOST)
+    }
+}
+
+/// A growing Delaunay triangulation of `sites`, numbered in the order of insertion from 1.
+pub(crate) struct Triangulation<'k, K: Kernel> {
+    pub(crate) kernel: &'k K,
+    /// The points; the first is a stand-in for the ghost and never looked at.
+    pub(crate) sites: Vec<Site<K::Scalar>>,
+    pub(crate) cells: Vec<Cell>,
+    /// What the insertion of a number says of each cell, see [`Cavity`].
+    pub(crate) marks: Vec<u32>,
+    /// Cells not in use.
+    pub(crate) unused: Vec<u32>,
+    /// Where the next walk starts.
+    pub(crate) recent: u32,
+}
+
+/// Four points that span a tetrahedron, as positions in a list, or how far the points get.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Span {
+    /// All points equal, or none.
+    Point,
+    /// All points on a line.
+    Line,
+    /// All points in a plane.
+    Plane,
+    /// Positions of four points not in one plane, ascending.
+    Space([usize; 4]),
+}
+
+/// The first points, in order, that are not equal, not on a line, not in a plane.
+pub(crate) fn span<'a, K: Kernel>(
+    kernel: &K,
+    mut points: impl Iterator<Item = &'a [K::Scalar; 3]>,
+) -> Span
+where
+    K::Scalar: 'a,
+{
+    let Some(a) = points.next() else {
+        return Span::Point;
+    };
+    let mut rest = points.zip(1..);
+    let Some((b, second)) = rest.find(|(p, _)| *p != a) else {
+        return Span::Point;
+    };
+    let Some((c, third)) = rest.find(|(p, _)| !kernel.collinear([a, b, p])) else {
+        return Span::Line;
+    };
+    match rest.find(|(p, _)| kernel.orientation([a, b, c, p]) != 0.0) {
+        Some((_, fourth)) => Span::Space([0, second, third, fourth]),
+        None => Span::Plane,
+    }
+}
+
+impl<'k, K: Kernel> Triangulation<'k, K> {
+    /// The Delaunay triangulation of distinct `points`, or `None` where they span no space.
+    pub(crate) fn build(
+        kernel: &'k K,
+        points: &[Site<K::Scalar>],
+        task: &Task,
+    ) -> Result<Option<Self>, DelaunayError> {
+        let step = kernel.step_mm();
+        let order = insertion_order(
+            points
+                .iter()
+                .map(|s| [0, 1, 2].map(|k| K::number(s.at[k]) * step[k])),
+        );
+        let mut sites: Vec<Site<K::Scalar>> = order.iter().map(|&i| points[i as usize]).collect();
+        let Span::Space(first) = span(kernel, sites.iter().map(|s| &s.at)) else {
+            return Ok(None);
+        };
+        // The four go to the front (swapping keeps the others on the curve, but for a few).
+        for (to, from) in first.into_iter().enumerate() {
+            sites.swap(to, from);
+        }
+        sites.insert(
+            0,
+            Site {
+                at: [K::Scalar::default(); 3],
+                rank: u32::MAX,
+            },
+        );
+        let mut triangulation = Self {
+            kernel,
+            cells: Vec::with_capacity(8 * sites.len()),
+            marks: Vec::with_capacity(8 * sites.len()),
+            sites,
+            unused: Vec::new(),
+            recent: 0,
+        };
+        triangulation.start();
+        triangulation.insert_rest(task)?;
+        Ok(Some(triangulation))
+    }
+
+    /// The tetrahedron of the first four points and the four infinite cells around it.
+    fn start(&mut self) {
+        let mut vertices = [1, 2, 3, 4];
+        if self.kernel.orientation(self.corners(vertices)) < 0.0 {
+            vertices.swap(2, 3);
+        }
+        self.cells.push(Cell {
+            vertices,
+            neighbours: [4, 9, 14, 19],
+        });
+        for f in 0..4 {
+            // The ghost is beyond facet `f`, opposite the vertex it replaces: swap two others.
+            let (i, j) = ((f + 1) % 4, (f + 2) % 4);
+            let mut outer = vertices;
+            outer[f] = GHOST;
+            outer.swap(i, j);
+            self.cells.push(Cell {
+                vertices: outer,
+                neighbours: [f as u32; 4],
+            });
+        }
+        for c in 1..5 {
+            for f in 0..4 {
+                let v = self.cells[c].vertices[f];
+                // The facet opposite `v` is shared with the infinite cell that lacks `v`.
+                self.cells[c].neighbours[f] = if v == GHOST {
+                    c as u32 - 1
+                } else {
+                    self.start_facet(c, v)
+                };
+            }
+        }
+        self.marks.resize(self.cells.len(), 0);
+    }
+
+    /// Among the first five cells: the facet of the infinite cell without vertex `lacking` that
+    /// it shares with infinite cell `c`.
+    fn start_facet(&self, c: usize, lacking: u32) -> u32 {
+        let replaced = |c: usize| self.cells[0].vertices[c - 1];
+        let other = (1..5)
+            .find(|&o| replaced(o) == lacking)
+            .expect("each vertex is lacked by one infinite cell, anything else is a bug");
+        let facet = self.cells[other]
+            .vertices
+            .iter()
+            .position(|&v| v == replaced(c))
+            .expect("an infinite cell has the vertices that others lack, anything else is a bug");
+        (4 * other + facet) as u32
+    }
+
+    fn insert_rest(&mut self, task: &Task) -> Result<(), DelaunayError> {
+        let mut cavity = Cavity::default();
+        let (mut inserted, mut made) = (4, 0);
+        for vertex in 5..self.sites.len() as u32 {
+            made += self.insert(vertex, &mut cavity);
+            inserted += 1;
+            if made >= CELLS_PER_CHECK {
+                task.advance(inserted)?;
+                (inserted, made) = (0, 0);
+                if self.cells.len() > CELL_LIMIT - CELLS_PER_CHECK {
+                    let points = self.sites.len() - 1;
+                    return Err(DelaunayError::TooMany {
+                        points,
+                        limit: CELL_LIMIT,
+                    });
+                }
+            }
+        }
+        Ok(task.advance(inserted)?)
+    }
+
+    /// Coordinates of four finite vertices.
+    #[inline]
+    pub(crate) fn corners(&self, vertices: [u32; 4]) -> [&[K::Scalar; 3]; 4] {
+        vertices.map(|v| &self.sites[v as usize].at)
+    }
+
+    /// The finite cells' sites.
+    pub(crate) fn finite_cells(&self) -> impl Iterator<Item = [Site<K::Scalar>; 4]> {
+        self.cells
+            .iter()
+            .filter(|c| c.vertices[0] != UNUSED && c.ghost().is_none())
+            .map(|c| c.vertices.map(|v| self.sites[v as usize]))
+    }
+}
