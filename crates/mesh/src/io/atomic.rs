@@ -58,13 +58,6 @@ pub(super) fn probe(path: &Path) -> Result<(), MeshError> {
     Ok(())
 }
 
-/// Whether [`write`] can begin.
-pub(super) fn check(path: &Path) -> Result<(), MeshError> {
-    let target = destination(path)?;
-    create_beside(&target).map_err(|e| MeshError::writing(path, &e))?;
-    Ok(())
-}
-
 /// Where the file goes, links followed, after the checks that a rename would not make.
 fn destination(path: &Path) -> Result<PathBuf, MeshError> {
     if path.is_dir() {

@@ -105,19 +105,6 @@ pub fn write_mesh(
     })
 }
 
-/// Makes sure that [`write_mesh`] could write `path` now, before the work that makes the mesh.
-///
-/// An empty file is made beside it and removed, which is the only sure test of a folder.
-///
-/// # Errors
-/// [`MeshError`] naming the file: unknown extension, missing or read-only folder, write-protected
-/// file, a folder of that name.
-pub fn check_target(path: impl AsRef<Path>) -> Result<(), MeshError> {
-    let path = path.as_ref();
-    MeshFormat::of(path)?;
-    atomic::check(path)
-}
-
 /// Refuses what no file can hold.
 fn check_writable(path: &Path, mesh: &TriangleMesh) -> Result<(), MeshError> {
     let path = path.to_path_buf();
