@@ -1,4 +1,26 @@
-//! Bone surfaces from point clouds, one file a method.
+//! Bone surfaces from point clouds, one file a method: triangles that face outward, in mm.
+//!
+//! Limits: [`alpha_surface`] is the one method so far. Its surface is closed, but may touch
+//! itself in edges and vertices, where a check reports it as not manifold; and alpha is one
+//! length for the whole cloud, so thin gaps close where it is large and holes open where it is
+//! small.
+//!
+//! ```
+//! use bonemesh_cloud::PointCloud;
+//! use bonemesh_surface::alpha_surface;
+//! use bonemesh_task::Task;
+//!
+//! let corners = (0..8).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(f64::from)).collect();
+//! let cube = PointCloud::from_points(corners)?;
+//! let surface = alpha_surface(&cube, 1.0, &Task::default())?;
+//! assert_eq!(surface.mesh.triangles().len(), 12);
+//! assert!((surface.volume_mm3 - 1.0).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Method: E. Rier, *Generation and segmentation of 3D models of bone from CT images based on 3D
+//! point clouds* (`MASc` thesis, `McMaster` University), after H. Edelsbrunner and E. P. Muecke,
+//! *Three-dimensional alpha shapes*, 1994.
 
 mod alpha;
 
@@ -13,7 +35,7 @@ use bonemesh_task::Cancelled;
 pub enum SurfaceError {
     /// The points cannot be tetrahedralised.
     #[error(transparent)]
-    Delaunay(#[from] DelaunayError),
+    Delaunay(DelaunayError),
     /// The triangles do not fit the vertices.
     #[error(transparent)]
     Mesh(#[from] MeshError),
@@ -31,4 +53,14 @@ pub enum SurfaceError {
     /// Stopped on request.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+impl From<DelaunayError> for SurfaceError {
+    fn from(error: DelaunayError) -> Self {
+        // A cancel is one thing wherever it was noticed.
+        match error {
+            DelaunayError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            error => Self::Delaunay(error),
+        }
+    }
 }
