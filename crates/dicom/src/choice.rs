@@ -70,10 +70,10 @@ impl Scan {
             }
             Some(SeriesChoice::Uid(uid)) => self.series.iter().filter(|s| s.uid == *uid).collect(),
         };
-        let longest = candidates.iter().map(|s| s.slices).max().unwrap_or(0);
+        let longest = candidates.iter().map(|s| s.slices_found).max().unwrap_or(0);
         let is_plausible = |s: &&Series| {
             longest <= MAX_LOCALIZER
-                || (s.slices > MAX_LOCALIZER && s.slices * FAR_LONGER > longest)
+                || (s.slices_found > MAX_LOCALIZER && s.slices_found * FAR_LONGER > longest)
         };
         let plausible: Vec<&Series> = candidates.into_iter().filter(is_plausible).collect();
         match (&plausible[..], choice) {

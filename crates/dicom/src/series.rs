@@ -134,9 +134,14 @@ impl Series {
         } else {
             &self.description
         };
+        let interpolated = if self.slices == self.slices_found {
+            String::new()
+        } else {
+            format!(" ({} with interpolated ones)", self.slices)
+        };
         format!(
-            "{} = {description}, {} slices of {} x {}, {:.2} mm apart ({})",
-            self.number, self.slices, self.columns, self.rows, self.spacing_mm[2], self.uid
+            "{} = {description}, {} slices{interpolated} of {} x {}, {:.2} mm apart ({})",
+            self.number, self.slices_found, self.columns, self.rows, self.spacing_mm[2], self.uid
         )
     }
 }

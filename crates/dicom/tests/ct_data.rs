@@ -1,8 +1,8 @@
 //! Series from the world outside, one pitfall each; skipped without `BONEMESH_CT`.
 
-
 // Helpers of these tests may panic; exact places are exact.
 #![allow(clippy::panic, clippy::unwrap_used, clippy::float_cmp)]
+
 use std::path::PathBuf;
 
 use bonemesh_dicom::{Scan, find_series, read_series};
