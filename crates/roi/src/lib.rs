@@ -1,1 +1,38 @@
-//! A selected region of a bone surface as its own mesh.
+//! The bone under a selected patch of its surface, down to a thickness, as a mesh of its own.
+//!
+//! [`Method::Thesis`] finds the vertices of the mesh that lie behind the selection, slice by slice,
+//! and meshes them and the selection as a point cloud. Its limits are those of the published
+//! method: the mesh must consist of slices of equal z, because levels are matched with levels; one
+//! normal is guessed for the whole patch, which is wrong where the patch curls or faces inward;
+//! corners are rounded; where the bone is thicker than the thickness, its back is ragged. The mesh
+//! lies in the axes of the images (x along rows, y along columns, z along the patient) with equal
+//! vertices merged, as [`bonemesh_mesh::read_mesh`] returns it.
+//!
+//! ```no_run
+//! use bonemesh_mesh::{read_mesh, write_mesh};
+//! use bonemesh_roi::{Method, ThicknessMm, read_selection, select_region};
+//! use bonemesh_task::Task;
+//!
+//! let task = Task::default();
+//! let mesh = read_mesh("skull.stl", &task)?;
+//! let selected = read_selection("selection.txt")?;
+//! let region = select_region(&mesh, &selected, ThicknessMm::new(5.0)?, Method::Thesis, &task)?;
+//! write_mesh("region.stl", &region.mesh, &task)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Source: E. Rier, *Generation and segmentation of 3D models of bone from CT images based on 3D
+//! point clouds* (master's thesis, called "the thesis" here).
+
+mod error;
+mod method;
+mod region;
+mod selection;
+mod thesis;
+mod thickness;
+
+pub use error::RoiError;
+pub use method::Method;
+pub use region::{Region, select_region};
+pub use selection::read_selection;
+pub use thickness::ThicknessMm;

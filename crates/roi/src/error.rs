@@ -1,0 +1,129 @@
+//! Why there is no region.
+
+use std::path::PathBuf;
+
+use bonemesh_cloud::CloudError;
+use bonemesh_surface::SurfaceError;
+use bonemesh_task::Cancelled;
+
+/// A region that cannot be made, and the remedy.
+#[non_exhaustive]
+#[derive(Debug, thiserror::Error)]
+pub enum RoiError {
+    /// The thickness is no depth.
+    #[error("the thickness is {0} mm; give a length above 0 mm")]
+    Thickness(f64),
+    /// No method has this name.
+    #[error("there is no region method {0:?}; the methods are: thesis")]
+    UnknownMethod(String),
+    /// Nothing is selected.
+    #[error("no vertex is selected; select a patch of the outer surface first")]
+    NoSelection,
+    /// A single vertex is selected.
+    #[error("only one vertex is selected; select a patch of at least three that are not in a line")]
+    OneVertex,
+    /// A selected vertex does not exist.
+    #[error(
+        "vertex {vertex} is selected, but the mesh has {vertices}; number them from 0, of the mesh as read and merged"
+    )]
+    Index {
+        /// The vertex named.
+        vertex: u32,
+        /// How many there are.
+        vertices: usize,
+    },
+    /// No second selected vertex gives a direction.
+    #[error(
+        "all {selected} selected vertices have the same x and y, so no direction into the bone follows; select a wider patch"
+    )]
+    NoSecondPoint {
+        /// How many vertices are selected.
+        selected: usize,
+    },
+    /// The two selected vertices that make the normal lie in a line with the selection's mean.
+    #[error(
+        "the outermost of the {selected} selected vertices lie in a line with their mean, so no direction into the bone follows; add or remove vertices at the rim of the patch"
+    )]
+    NoNormal {
+        /// How many vertices are selected.
+        selected: usize,
+    },
+    /// The mesh does not consist of slices.
+    #[error(
+        "the mesh is not made of slices ({vertices} vertices at {levels} different z); use an unsmoothed mesh of method alpha whose z is the slice direction"
+    )]
+    NoLevels {
+        /// How many vertices there are.
+        vertices: usize,
+        /// At how many different z they lie.
+        levels: usize,
+    },
+    /// No vertex of the mesh belongs to the region but the selected ones.
+    #[error(
+        "nothing was found behind the selection within {thickness_mm} mm; raise the thickness to that of the bone, or select a patch that faces outward"
+    )]
+    NothingBehind {
+        /// The thickness asked for.
+        thickness_mm: f64,
+    },
+    /// The region's points enclose no volume.
+    #[error(
+        "the {points} points of the region lie in one plane; select a patch of several slices or raise the thickness"
+    )]
+    Flat {
+        /// How many points there are.
+        points: usize,
+    },
+    /// The selection file cannot be read.
+    #[error("cannot read the selection file {} ({reason}); check the path", path.display())]
+    SelectionFile {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system said.
+        reason: String,
+    },
+    /// A line of the selection file is no vertex index.
+    #[error("line {line} of {} is {text:?}; write one vertex index (0, 1, 2, ...) a line", path.display())]
+    SelectionLine {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: usize,
+        /// What it says, or the beginning of it.
+        text: String,
+    },
+    /// The selection file holds no index.
+    #[error("{} holds no vertex index; write one a line", path.display())]
+    SelectionEmpty {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The region's points cannot be meshed.
+    #[error("the region cannot be meshed: {0}")]
+    Surface(SurfaceError),
+    /// The region's points make no cloud.
+    #[error("the region makes no cloud: {0}")]
+    Cloud(CloudError),
+    /// Stopped on request.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+// A cancel stays a cancel, whichever step it stopped.
+impl From<CloudError> for RoiError {
+    fn from(error: CloudError) -> Self {
+        match error {
+            CloudError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            other => Self::Cloud(other),
+        }
+    }
+}
+
+impl From<SurfaceError> for RoiError {
+    fn from(error: SurfaceError) -> Self {
+        match error {
+            SurfaceError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            other => Self::Surface(other),
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! From a selection to its region, whichever the method.
+
+use bonemesh_cloud::{PointCloud, mean_neighbour_distance};
+use bonemesh_mesh::TriangleMesh;
+use bonemesh_surface::{AlphaSurface, alpha_surface};
+use bonemesh_task::Task;
+
+use crate::selection::Selection;
+use crate::{Method, RoiError, ThicknessMm, thesis};
+
+/// Neighbours over which alpha is averaged, the point itself included, as for whole clouds.
+const NEIGHBOURS: usize = 100;
+
+/// Points whose distance from a plane is below this part of their extent lie in it: 32-bit files
+/// do not keep coordinates better than that.
+const FLATNESS: f64 = 1e-6;
+
+/// The bone under a selection as a mesh of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Region {
+    /// Its surface, where it lies in the mesh it was taken from.
+    pub mesh: TriangleMesh,
+    /// Distinct selected vertices.
+    pub selected: usize,
+    /// Vertices of the mesh found behind them.
+    pub kept_points: usize,
+    /// Largest circumradius of a tetrahedron.
+    pub alpha_mm: f64,
+    /// Unit normal of the selection, into the bone.
+    pub normal: [f64; 3],
+    /// Tetrahedra that make the region.
+    pub tetrahedra: usize,
+    /// Their volume.
+    pub volume_mm3: f64,
+}
+
+/// The region of `mesh` under the `selected` vertices down to `thickness`.
+///
+/// Selected vertices may repeat and come in any order; the result does not depend on it, nor on
+/// the number of threads. The vertices of the region are vertices of the mesh, unmoved. Triangles
+/// of the mesh play no part in method `thesis`.
+///
+/// # Errors
+/// [`RoiError`]: nothing or one vertex selected, an index the mesh does not have, no normal, a mesh
+/// without slices, nothing behind the selection, a flat region, or the work was cancelled.
+pub fn select_region(
+    mesh: &TriangleMesh,
+    selected: &[u32],
+    thickness: ThicknessMm,
+    method: Method,
+    task: &Task,
+) -> Result<Region, RoiError> {
+    let selection = Selection::new(selected, mesh.vertices_mm().len())?;
+    let behind = match method {
+        Method::Thesis => thesis::find_behind(mesh, &selection, thickness, task)?,
+    };
+    if behind.kept.is_empty() {
+        return Err(RoiError::NothingBehind {
+            thickness_mm: thickness.mm(),
+        });
+    }
+    let points = region_points(mesh.vertices_mm(), selection.indices(), &behind.kept);
+    if is_flat(&points) {
+        return Err(RoiError::Flat {
+            points: points.len(),
+        });
+    }
+    let cloud = PointCloud::from_points(points)?;
+    let alpha_mm = mean_neighbour_distance(&cloud, NEIGHBOURS, true, task)?;
+    let AlphaSurface {
+        mesh,
+        tetrahedra,
+        volume_mm3,
+    } = alpha_surface(&cloud, alpha_mm, task)?;
+    Ok(Region {
+        mesh,
+        selected: selection.indices().len(),
+        kept_points: behind.kept.len(),
+        alpha_mm,
+        normal: behind.normal,
+        tetrahedra,
+        volume_mm3,
+    })
+}
+
+/// The points (mm) of the selected and the kept vertices in the order of the mesh, each place once.
+fn region_points(vertices_mm: &[[f64; 3]], selected: &[u32], kept: &[u32]) -> Vec<[f64; 3]> {
+    let mut indices = [selected, kept].concat();
+    indices.sort_unstable();
+    let mut places = rustc_hash::FxHashSet::default();
+    indices
+        .into_iter()
+        .map(|vertex| vertices_mm[vertex as usize])
+        .filter(|point| places.insert(point.map(|c| (c + 0.0).to_bits())))
+        .collect()
+}
+
+/// Whether all points lie in one plane (or line, or place), to within [`FLATNESS`].
+fn is_flat(points: &[[f64; 3]]) -> bool {
+    let Some(&first) = points.first() else {
+        return true;
+    };
+    let from_first: Vec<[f64; 3]> = points.iter().map(|&p| minus(p, first)).collect();
+    let longest = |vectors: &[[f64; 3]]| -> [f64; 3] {
+        let length = |v: &[f64; 3]| dot(*v, *v);
+        let longer = vectors
+            .iter()
+            .max_by(|a, b| length(a).total_cmp(&length(b)));
+        longer.copied().unwrap_or_default()
+    };
+    let u = longest(&from_first);
+    let extent = dot(u, u).sqrt();
+    let normals: Vec<[f64; 3]> = from_first.iter().map(|&v| cross(u, v)).collect();
+    let normal = longest(&normals);
+    let scale = dot(normal, normal).sqrt();
+    // `scale` is the extent times the width, the product a volume.
+    scale <= FLATNESS * extent * extent
+        || from_first
+            .iter()
+            .all(|&v| dot(v, normal).abs() <= FLATNESS * extent * scale)
+}
+
+/// `a - b`.
+pub(crate) fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// Scalar product.
+pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Vector product.
+pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_in_a_plane_are_flat_and_a_step_out_of_it_is_not() {
+        let mut points: Vec<[f64; 3]> = (0..20)
+            .map(|i| (f64::from(i % 5), f64::from(i / 5)))
+            .map(|(u, v)| [u, v, 2.0 * u - 3.0 * v + 700.0].map(|c| f64::from(c as f32)))
+            .collect();
+        assert!(is_flat(&points));
+        assert!(is_flat(&points[..1]) && is_flat(&points[..2]) && is_flat(&[]));
+        points.push([0.0, 0.0, 700.1]);
+        assert!(!is_flat(&points));
+    }
+
+    #[test]
+    fn each_place_of_a_region_is_there_once() {
+        let vertices = [[1.0, 2.0, 0.0], [3.0; 3], [1.0, 2.0, -0.0], [4.0; 3]];
+        let points = region_points(&vertices, &[0, 3], &[2, 1]);
+        assert_eq!(points, [[1.0, 2.0, 0.0], [3.0; 3], [4.0; 3]]);
+    }
+}
