@@ -1,5 +1,7 @@
 //! Damaged and hostile files cost themselves, never the program.
 
+#![allow(clippy::unwrap_used)]
+
 mod common;
 
 use bonemesh_dicom::{find_series, read_series};
@@ -8,6 +10,9 @@ use common::{Image, file, folder, scan};
 use dicom_core::VR;
 use dicom_dictionary_std::{tags, uids};
 use proptest::prelude::*;
+
+/// Retired, and still in archives.
+const BIG_ENDIAN: &str = "1.2.840.10008.1.2.2";
 
 /// Reads the folder as far as it goes; only a panic or a hang can fail.
 fn try_to_read(folder: &std::path::Path) {
@@ -38,7 +43,7 @@ proptest! {
         let syntaxes = [
             uids::EXPLICIT_VR_LITTLE_ENDIAN,
             uids::IMPLICIT_VR_LITTLE_ENDIAN,
-            uids::EXPLICIT_VR_BIG_ENDIAN,
+            BIG_ENDIAN,
             uids::DEFLATED_EXPLICIT_VR_LITTLE_ENDIAN,
         ];
         for k in 0..3 {

@@ -11,24 +11,24 @@ use dicom_core::{DataElement, PrimitiveValue, Tag, VR};
 use dicom_dictionary_std::{tags, uids};
 use dicom_object::{FileMetaTableBuilder, InMemDicomObject};
 
-pub const ROWS: usize = 3;
-pub const COLUMNS: usize = 4;
-pub const UID: &str = "1.2.3.4";
+pub(crate) const ROWS: usize = 3;
+pub(crate) const COLUMNS: usize = 4;
+pub(crate) const UID: &str = "1.2.3.4";
 
 /// Stored value of the pixel at slice, row, column: no two mirror images agree.
-pub fn stored(k: usize, j: usize, i: usize) -> u16 {
+pub(crate) fn stored(k: usize, j: usize, i: usize) -> u16 {
     (1000 + 100 * k + 10 * j + i) as u16
 }
 
 /// One image to be changed and written.
-pub struct Image {
-    pub elements: InMemDicomObject,
-    pub syntax: &'static str,
+pub(crate) struct Image {
+    pub(crate) elements: InMemDicomObject,
+    pub(crate) syntax: &'static str,
 }
 
 impl Image {
     /// Slice `k` at z = 2 k, pixels 0.5 mm wide and 0.75 mm high, HU = stored - 1024.
-    pub fn new(k: usize) -> Self {
+    pub(crate) fn new(k: usize) -> Self {
         let mut image = Self {
             elements: InMemDicomObject::new_empty(),
             syntax: uids::EXPLICIT_VR_LITTLE_ENDIAN,
@@ -87,24 +87,24 @@ impl Image {
         image.pixels(|j, i| stored(k, j, i))
     }
 
-    pub fn text(mut self, tag: Tag, vr: VR, text: &str) -> Self {
+    pub(crate) fn text(mut self, tag: Tag, vr: VR, text: &str) -> Self {
         let element = DataElement::new(tag, vr, PrimitiveValue::from(text));
         self.elements.put(element);
         self
     }
 
-    pub fn number(mut self, tag: Tag, number: u16) -> Self {
+    pub(crate) fn number(mut self, tag: Tag, number: u16) -> Self {
         let element = DataElement::new(tag, VR::US, PrimitiveValue::from(number));
         self.elements.put(element);
         self
     }
 
-    pub fn without(mut self, tag: Tag) -> Self {
+    pub(crate) fn without(mut self, tag: Tag) -> Self {
         self.elements.remove_element(tag);
         self
     }
 
-    pub fn pixels(mut self, value: impl Fn(usize, usize) -> u16) -> Self {
+    pub(crate) fn pixels(mut self, value: impl Fn(usize, usize) -> u16) -> Self {
         let values: Vec<u16> = (0..ROWS * COLUMNS)
             .map(|n| value(n / COLUMNS, n % COLUMNS))
             .collect();
@@ -114,21 +114,21 @@ impl Image {
         self
     }
 
-    pub fn position(self, p: [f64; 3]) -> Self {
+    pub(crate) fn position(self, p: [f64; 3]) -> Self {
         let text = format!("{}\\{}\\{}", p[0], p[1], p[2]);
         self.text(tags::IMAGE_POSITION_PATIENT, VR::DS, &text)
     }
 
-    pub fn orientation(self, o: [f64; 6]) -> Self {
+    pub(crate) fn orientation(self, o: [f64; 6]) -> Self {
         let text = o.map(|v| v.to_string()).join("\\");
         self.text(tags::IMAGE_ORIENTATION_PATIENT, VR::DS, &text)
     }
 
-    pub fn uid(self, uid: &str) -> Self {
+    pub(crate) fn uid(self, uid: &str) -> Self {
         self.text(tags::SERIES_INSTANCE_UID, VR::UI, uid)
     }
 
-    pub fn write(self, path: &Path) {
+    pub(crate) fn write(self, path: &Path) {
         let meta = FileMetaTableBuilder::new()
             .transfer_syntax(self.syntax)
             .media_storage_sop_class_uid(uids::CT_IMAGE_STORAGE)
@@ -139,7 +139,7 @@ impl Image {
 }
 
 /// A folder of `slices` images, each changed by `change`; named against their order.
-pub fn folder(slices: usize, change: impl Fn(usize, Image) -> Image) -> tempfile::TempDir {
+pub(crate) fn folder(slices: usize, change: impl Fn(usize, Image) -> Image) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for k in 0..slices {
         change(k, Image::new(k)).write(&file(folder.path(), slices, k));
@@ -147,33 +147,33 @@ pub fn folder(slices: usize, change: impl Fn(usize, Image) -> Image) -> tempfile
     folder
 }
 
-pub fn file(folder: &Path, slices: usize, k: usize) -> PathBuf {
+pub(crate) fn file(folder: &Path, slices: usize, k: usize) -> PathBuf {
     folder.join(format!("{:04}", slices - k))
 }
 
-pub fn scan(folder: &Path) -> Scan {
+pub(crate) fn scan(folder: &Path) -> Scan {
     find_series(folder, &Task::default()).unwrap()
 }
 
-pub fn error(folder: &Path) -> DicomError {
+pub(crate) fn error(folder: &Path) -> DicomError {
     find_series(folder, &Task::default()).unwrap_err()
 }
 
 /// The volume of a folder's only series, and the warnings.
-pub fn read(folder: &Path) -> (Volume, Vec<String>) {
+pub(crate) fn read(folder: &Path) -> (Volume, Vec<String>) {
     let scan = scan(folder);
     assert_eq!(scan.series.len(), 1, "{:?}", scan.left_out);
     read_series(&scan.series[0], &Task::default()).unwrap()
 }
 
-pub fn hu(volume: &Volume, at: [usize; 3]) -> f64 {
+pub(crate) fn hu(volume: &Volume, at: [usize; 3]) -> f64 {
     match volume.voxels() {
         Voxels::I16(hu) => f64::from(hu[at]),
         Voxels::F32(hu) => f64::from(hu[at]),
     }
 }
 
-pub fn assert_near(a: [f64; 3], b: [f64; 3]) {
+pub(crate) fn assert_near(a: [f64; 3], b: [f64; 3]) {
     for (x, y) in a.into_iter().zip(b) {
         assert!((x - y).abs() < 1e-6, "{a:?} is not {b:?}");
     }
