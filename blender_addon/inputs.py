@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the panel asks for, checked before any work begins. Knows no bpy."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+RESERVED_ON_WINDOWS = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
+NOT_IN_NAMES = re.compile(r'[\x00-\x1f\x7f/\\:*?"<>|]')
+WHOLE_NUMBER = re.compile(r"[0-9]{1,9}")
+
+
+class RefusalError(Exception):
+    """The request cannot be carried out as it stands; the message is one line with the remedy."""
+
+
+@dataclass(frozen=True)
+class RenderInputs:
+    """A checked request for a surface mesh."""
+
+    ct_directory: Path
+    output: Path
+    name: str
+    options: dict[str, Any]
+    """The keyword arguments of bonemesh.render."""
+
+    @classmethod
+    def read(cls, properties: Any, resolve: Callable[[str], str] = str) -> RenderInputs:
+        """From `scene.bonemesh`; `resolve` makes Blender's relative paths absolute."""
+        ct_directory = existing_directory(
+            resolve(properties.ct_directory),
+            missing="no folder of CT images is chosen; press Select File Directory of CT Images",
+        )
+        directory = output_directory(resolve(properties.mesh_directory))
+        name = file_stem(properties.mesh_name, "Mesh Filename")
+        percent = as_typed(properties.sample_percent)
+        options = {
+            "threshold_hu": float(properties.hu_threshold),
+            "method": properties.method,
+            "sigma": as_typed(properties.sigma),
+            "series": series_choice(properties.series),
+            "crop": properties.crop.strip() or None,
+            "sample_percent": percent if percent < 100.0 else None,
+            "sampler": properties.sampler,
+        }
+        return cls(ct_directory, directory / f"{name}.stl", name, options)
+
+
+@dataclass(frozen=True)
+class RegionInputs:
+    """A checked request for a region of interest."""
+
+    output: Path
+    name: str
+    thickness_mm: float
+
+    @classmethod
+    def read(cls, properties: Any, resolve: Callable[[str], str] = str) -> RegionInputs:
+        """From `scene.bonemesh`; `resolve` makes Blender's relative paths absolute."""
+        directory = output_directory(resolve(properties.mesh_directory))
+        name = file_stem(properties.roi_name, "Segmented Mesh Filename")
+        if name.casefold() == without_suffix(properties.mesh_name).casefold():
+            raise RefusalError(
+                f"the region would overwrite {name}.stl of the whole mesh; change Segmented Mesh Filename"
+            )
+        thickness_mm = as_typed(properties.cut_thickness)
+        if not thickness_mm > 0.0:
+            raise RefusalError(
+                "the thickness of cut is 0 mm; set Thickness of Cut (mm) above 0"
+            )
+        return cls(directory / f"{name}.stl", name, thickness_mm)
+
+
+def as_typed(value: float) -> float:
+    """The decimal number that was typed: Blender keeps 32 bits of it, so 0.1 comes back as 0.1000000015."""
+    return round(value, 5)
+
+
+def existing_directory(path: str, missing: str) -> Path:
+    """`path` as a folder that exists; `missing` is said where it is empty."""
+    if not path.strip():
+        raise RefusalError(missing)
+    directory = Path(path)
+    if not directory.exists():
+        raise RefusalError(f"{path} does not exist; choose another folder")
+    if not directory.is_dir():
+        raise RefusalError(f"{path} is a file; choose the folder it is in")
+    return directory
+
+
+def output_directory(path: str) -> Path:
+    """`path` as a folder that exists and can be written to."""
+    directory = existing_directory(
+        path,
+        missing="no folder for the meshes is chosen; press Select File Location to Save Mesh",
+    )
+    if not os.access(directory, os.W_OK | os.X_OK):
+        raise RefusalError(f"{path} cannot be written to; choose another folder")
+    return directory
+
+
+def without_suffix(name: str) -> str:
+    """`name` without blanks around it and without `.stl`, which is added again to the file."""
+    name = name.strip()
+    return name[:-4].rstrip() if name.lower().endswith(".stl") else name
+
+
+def file_stem(name: str, label: str) -> str:
+    """`name` as the name of one file inside its folder, on every system, without its suffix."""
+    stem = without_suffix(name)
+    if not stem:
+        raise RefusalError(f"{label} is empty; give the mesh a name")
+    if NOT_IN_NAMES.search(stem) or stem.startswith(".") or stem.endswith("."):
+        raise RefusalError(
+            f'{label} "{stem}" is no plain file name; use no folders, no leading or final dot and none of / \\ : * ? " < > |'
+        )
+    if RESERVED_ON_WINDOWS.fullmatch(stem):
+        raise RefusalError(
+            f'{label} "{stem}" is reserved by Windows; choose another name'
+        )
+    return stem
+
+
+def series_choice(text: str) -> int | str | None:
+    """A 1-based number, a series UID, or None for the only series of the folder."""
+    text = text.strip()
+    if not text:
+        return None
+    return int(text) if WHOLE_NUMBER.fullmatch(text) else text

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The operators, one file each."""
+
+import atexit
+
+import bpy
+
+from . import background
+from .cancel import BONEMESH_OT_cancel
+from .choose_ct_directory import BONEMESH_OT_choose_ct_directory
+from .choose_mesh_directory import BONEMESH_OT_choose_mesh_directory
+from .render_surface_mesh import BONEMESH_OT_render_surface_mesh
+from .select_roi import BONEMESH_OT_select_roi
+
+CLASSES = (
+    BONEMESH_OT_choose_ct_directory,
+    BONEMESH_OT_choose_mesh_directory,
+    BONEMESH_OT_render_surface_mesh,
+    BONEMESH_OT_select_roi,
+    BONEMESH_OT_cancel,
+)
+
+
+def stop_jobs() -> None:
+    """Ends a running job and its timer: neither may outlive the operators or Blender."""
+    background.stop_all(bpy.context)
+
+
+def register() -> None:
+    """Adds the operators."""
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    atexit.register(stop_jobs)
+
+
+def unregister() -> None:
+    """Stops what runs and takes the operators away."""
+    atexit.unregister(stop_jobs)
+    stop_jobs()
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

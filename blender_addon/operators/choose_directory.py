@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the two folder pickers share: Blender's file browser, and a refusal of what is no folder."""
+
+import bpy
+from bpy.types import Context, Event
+
+from .. import inputs
+
+
+class DirectoryPicker:
+    """Mixed into an operator with a `directory`; names the property of `scene.bonemesh` to set."""
+
+    target: str
+
+    def invoke(self, context: Context, _event: Event) -> set[str]:
+        """Opens the file browser where the last choice was."""
+        self.directory = getattr(context.scene.bonemesh, self.target)
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: Context) -> set[str]:
+        """Takes the chosen folder, or refuses what is none."""
+        try:
+            inputs.existing_directory(
+                bpy.path.abspath(self.directory),
+                missing="no folder is chosen; choose one",
+            )
+        except inputs.RefusalError as refusal:
+            self.report({"ERROR"}, str(refusal))
+            return {"CANCELLED"}
+        setattr(context.scene.bonemesh, self.target, self.directory)
+        return {"FINISHED"}

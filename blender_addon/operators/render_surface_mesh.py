@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""bonemesh.render_surface_mesh: CT images to a surface mesh, in the scene and as STL."""
+
+from typing import ClassVar
+
+import bonemesh
+import bpy
+from bpy.types import Context, Operator
+
+from .. import scene, window
+from ..inputs import RenderInputs
+from ..job import Job
+from .background import BackgroundOperator
+
+
+class BONEMESH_OT_render_surface_mesh(BackgroundOperator, Operator):
+    """Make the surface mesh of the bone in the CT images, save it as STL and add it to the scene"""
+
+    bl_idname = "bonemesh.render_surface_mesh"
+    bl_label = "Render Surface Mesh"
+    bl_options: ClassVar[set[str]] = {"UNDO"}
+
+    def prepare(self, context: Context) -> Job[bonemesh.Mesh]:
+        """Checks the panel's fields."""
+        properties = context.scene.bonemesh
+        self._inputs = inputs = RenderInputs.read(properties, bpy.path.abspath)
+        self._center_in_world = properties.center_in_world
+
+        def work(job: Job) -> bonemesh.Mesh:
+            mesh = bonemesh.render(
+                inputs.ct_directory,
+                **inputs.options,
+                progress=job.note_progress,
+                cancel=job.cancel_token,
+            )
+            job.stop_if_cancelled()
+            mesh.save(inputs.output)
+            return mesh
+
+        return Job("Render Surface Mesh", work)
+
+    def finish(self, context: Context, result: bonemesh.Mesh) -> str:
+        """Adds the mesh to the scene, selected and in view."""
+        scene.use_millimetres(context)
+        bone = scene.add_bone(
+            context, self._inputs.name, result, in_world_centre=self._center_in_world
+        )
+        if scene.select_only(context, bone):
+            window.frame_selected(context)
+        for warning in result.report["warnings"]:
+            self.report({"WARNING"}, warning)
+        return f"{self._inputs.output}: {len(result.triangles):,} triangles"

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The panel that stands in when the compiled library does not load: what is wrong and the remedy."""
+
+import textwrap
+
+import bpy
+from bpy.types import Context, Panel
+
+LINE_LENGTH = 40  # letters that fit the sidebar at its first width
+
+_problem = ""
+
+
+class BONEMESH_PT_without_library(Panel):
+    """Says why nothing can be rendered."""
+
+    bl_label = "Segment CT"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Segment CT"
+
+    def draw(self, context: Context) -> None:
+        """Draws the problem, line by line."""
+        column = self.layout.column(align=True)
+        column.label(text="Bonemesh cannot work", icon="ERROR")
+        for line in textwrap.wrap(_problem, LINE_LENGTH):
+            column.label(text=line)
+
+
+def is_registered() -> bool:
+    """Whether this panel stands in."""
+    return BONEMESH_PT_without_library.is_registered
+
+
+def register(problem: str) -> None:
+    """Shows the panel with `problem`."""
+    global _problem
+    _problem = problem
+    bpy.utils.register_class(BONEMESH_PT_without_library)
+
+
+def unregister() -> None:
+    """Takes the panel away."""
+    bpy.utils.unregister_class(BONEMESH_PT_without_library)

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The tab "Segment CT" in the sidebar of the 3D view."""
+
+from typing import ClassVar
+
+import bpy
+from bpy.types import Context, Panel, UILayout
+
+from . import job
+from .operators.cancel import BONEMESH_OT_cancel
+from .operators.choose_ct_directory import BONEMESH_OT_choose_ct_directory
+from .operators.choose_mesh_directory import BONEMESH_OT_choose_mesh_directory
+from .operators.render_surface_mesh import BONEMESH_OT_render_surface_mesh
+from .operators.select_roi import BONEMESH_OT_select_roi
+
+
+class BONEMESH_PT_segment_ct(Panel):
+    """From CT images to a surface mesh, and from that to a region of interest."""
+
+    bl_label = "Segment CT"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Segment CT"
+
+    def draw(self, context: Context) -> None:
+        """Draws the fields in the order in which they are used."""
+        properties = context.scene.bonemesh
+        layout = self.layout
+
+        column = layout.column()
+        column.operator(BONEMESH_OT_choose_ct_directory.bl_idname)
+        column.prop(properties, "ct_directory", text="")
+        column.prop(properties, "hu_threshold", slider=True)
+        column.prop(properties, "cut_thickness")
+
+        column = layout.column()
+        column.label(text="Mesh Filename")
+        column.prop(properties, "mesh_name", text="")
+        column.operator(BONEMESH_OT_choose_mesh_directory.bl_idname)
+        column.prop(properties, "mesh_directory", text="")
+        column.operator(BONEMESH_OT_render_surface_mesh.bl_idname)
+
+        column = layout.column()
+        column.label(text="Segmented Mesh Filename")
+        column.prop(properties, "roi_name", text="")
+        column.operator(BONEMESH_OT_select_roi.bl_idname)
+
+        running = job.running()
+        if running is not None:
+            draw_progress(layout, running)
+
+
+def draw_progress(layout: UILayout, running: job.Job) -> None:
+    """Draws how far the running job is and the button that stops it."""
+    stage, fraction = running.progress
+    column = layout.column()
+    column.label(text=running.title)
+    column.progress(factor=fraction, text=stage.capitalize(), type="BAR")
+    column.operator(BONEMESH_OT_cancel.bl_idname, icon="X")
+
+
+class BONEMESH_PT_advanced(Panel):
+    """What is right as it stands for most images."""
+
+    bl_label = "Advanced"
+    bl_parent_id = "BONEMESH_PT_segment_ct"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Segment CT"
+    bl_options: ClassVar[set[str]] = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Context) -> None:
+        """Draws the settings of the next rendering."""
+        properties = context.scene.bonemesh
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        column = layout.column()
+        column.prop(properties, "series")
+        column.prop(properties, "crop")
+        column.prop(properties, "method")
+        column.prop(properties, "sigma")
+        column.prop(properties, "sample_percent")
+        sampler = column.row()
+        sampler.enabled = properties.sample_percent < 100.0
+        sampler.prop(properties, "sampler")
+        column.prop(properties, "center_in_world")
+
+
+CLASSES = (BONEMESH_PT_segment_ct, BONEMESH_PT_advanced)
+
+
+def register() -> None:
+    """Adds the panels."""
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister() -> None:
+    """Takes the panels away."""
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The only writer of Blender's data: meshes into objects, units, clipping, selection."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bonemesh
+import bpy
+import numpy as np
+from mathutils import Matrix, Vector
+from numpy.typing import NDArray
+
+from .selection import CENTRE_MM, PATIENT_MM, Source, relative_to
+
+MM_IN_METRES = 0.001
+# A body is two metres long and is looked at from a few times that; the ratio of far to near stays
+# within what a 24-bit depth buffer tells apart.
+CLIP_START_MM = 1.0
+CLIP_END_MM = 20_000.0
+
+BONE_COLOUR = (0.86, 0.80, 0.68, 1.0)
+REGION_COLOUR = (0.85, 0.25, 0.10, 1.0)
+
+
+def use_millimetres(context: Any) -> None:
+    """One Blender unit is one millimetre, and every 3D view sees a whole body."""
+    units = context.scene.unit_settings
+    units.system = "METRIC"
+    units.scale_length = MM_IN_METRES
+    units.length_unit = "MILLIMETERS"
+    for screen in bpy.data.screens:
+        for area in screen.areas:
+            for space in area.spaces:
+                if space.type == "VIEW_3D":
+                    space.clip_start = max(space.clip_start, CLIP_START_MM)
+                    space.clip_end = max(space.clip_end, CLIP_END_MM)
+
+
+def add_bone(
+    context: Any, name: str, bone: bonemesh.Mesh, *, in_world_centre: bool
+) -> Any:
+    """Adds a rendered mesh, at its place in the patient or at the world's centre."""
+    placed = add_object(context, name, bone, "Bonemesh Bone", BONE_COLOUR)
+    if in_world_centre:
+        placed.location = (0.0, 0.0, 0.0)
+    link(context, placed, context.collection)
+    report = bone.report
+    keep(placed, "version", report["version"])
+    keep(placed, "method", report["method"])
+    keep(placed, "threshold_hu", report["threshold_hu"])
+    keep(placed, "series_uid", report["series_uid"])
+    keep(placed, "spacing_mm", report["spacing_mm"])
+    context.view_layer.update()
+    return placed
+
+
+def add_region(context: Any, name: str, region: bonemesh.Mesh, source: Source) -> Any:
+    """Adds a region where it lies in its source, however that was moved."""
+    placed = add_object(context, name, region, "Bonemesh Region", REGION_COLOUR)
+    placed.matrix_world = source.world_from_patient @ placed.matrix_world
+    link(
+        context, placed, bpy.data.collections.get(source.collection, context.collection)
+    )
+    for key in ("bonemesh_threshold_hu", "bonemesh_series_uid", "bonemesh_spacing_mm"):
+        if key in source.properties:
+            placed[key] = source.properties[key]
+    keep(placed, "version", region.report["version"])
+    keep(placed, "method", region.report["method"])
+    keep(placed, "thickness_mm", region.report["thickness_mm"])
+    keep(placed, "source", source.name)
+    return placed
+
+
+def select_only(context: Any, placed: Any) -> bool:
+    """Selects `placed` and makes it active, unless something is being edited, which goes on."""
+    if context.mode != "OBJECT":
+        return False
+    for other in context.selected_objects:
+        other.select_set(False)
+    placed.select_set(True)
+    context.view_layer.objects.active = placed
+    return True
+
+
+def add_object(
+    context: Any,
+    name: str,
+    mesh: bonemesh.Mesh,
+    material: str,
+    colour: tuple[float, ...],
+) -> Any:
+    """An object with its origin at the mesh's centre, at its place in the patient; not linked yet."""
+    vertices = mesh.vertices
+    # Kept with the 32 bits of an object's location, so that location + local is the patient's place.
+    centre = (
+        vertices.mean(axis=0, dtype=np.float64).astype(np.float32).astype(np.float64)
+    )
+    data = bpy.data.meshes.new(name)
+    fill(data, relative_to(vertices, centre), mesh.triangles)
+    exact = data.attributes.new(PATIENT_MM, "FLOAT_VECTOR", "POINT")
+    exact.data.foreach_set("vector", vertices.ravel())
+    data.materials.append(viewport_material(material, colour))
+    placed = bpy.data.objects.new(name, data)
+    placed.matrix_world = Matrix.Translation(Vector(centre))
+    placed[CENTRE_MM] = centre.tolist()
+    return placed
+
+
+def fill(
+    data: Any, vertices: NDArray[np.float32], triangles: NDArray[np.uint32]
+) -> None:
+    """Vertices and triangles into an empty mesh, nothing selected.
+
+    Through the attributes, which are copied as a whole; the older `vertices.foreach_set("co")` goes
+    through them one at a time and takes twice as long.
+    """
+    corners = np.ascontiguousarray(triangles).view(np.int32).ravel()
+    data.vertices.add(len(vertices))
+    data.loops.add(len(corners))
+    data.polygons.add(len(triangles))
+    data.attributes["position"].data.foreach_set("vector", vertices.ravel())
+    data.attributes[".corner_vert"].data.foreach_set("value", corners)
+    data.polygons.foreach_set(
+        "loop_start", np.arange(0, len(corners), 3, dtype=np.int32)
+    )
+    data.update(calc_edges=True)
+    # Blender makes new elements selected: the next region would begin with everything.
+    for selection in (".select_vert", ".select_edge", ".select_poly"):
+        attribute = data.attributes.get(selection)
+        if attribute is not None:
+            data.attributes.remove(attribute)
+
+
+def viewport_material(name: str, colour: tuple[float, ...]) -> Any:
+    """The shared material of that name, in `colour` when it is new."""
+    material = bpy.data.materials.get(name)
+    if material is None:
+        material = bpy.data.materials.new(name)
+        material.diffuse_color = colour
+        material.roughness = 0.6
+    return material
+
+
+def link(context: Any, placed: Any, collection: Any) -> None:
+    """Into `collection`, or into the scene's own where that one is not shown."""
+    collection.objects.link(placed)
+    if context.view_layer.objects.get(placed.name) is None:
+        collection.objects.unlink(placed)
+        context.scene.collection.objects.link(placed)
+
+
+def keep(placed: Any, key: str, value: Any) -> None:
+    """A custom property of the object; what is not known is left out."""
+    if value is not None:
+        placed[f"bonemesh_{key}"] = value

@@ -1,0 +1,98 @@
+"""The panel's fields are checked before any work begins (needs no Blender)."""
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from blender_addon.inputs import (
+    RefusalError,
+    RegionInputs,
+    RenderInputs,
+    file_stem,
+    series_choice,
+)
+
+
+def fields(folder: Path, **changes: Any) -> Any:
+    values = {
+        "ct_directory": str(folder),
+        "mesh_directory": str(folder),
+        "hu_threshold": 350,
+        "cut_thickness": 5.0,
+        "mesh_name": "bone",
+        "roi_name": "region",
+        "sigma": 1.0,
+        "sample_percent": 100.0,
+        "sampler": "uniform",
+        "method": "alpha",
+        "series": "",
+        "crop": "",
+    }
+    return SimpleNamespace(**(values | changes))
+
+
+def test_defaults_ask_for_everything_there_is(tmp_path: Path) -> None:
+    inputs = RenderInputs.read(fields(tmp_path))
+    assert inputs.output == tmp_path / "bone.stl"
+    assert inputs.options["sample_percent"] is None
+    assert inputs.options["series"] is None
+    assert inputs.options["crop"] is None
+
+
+def test_a_number_is_the_one_that_was_typed(tmp_path: Path) -> None:
+    as_blender_keeps_it = 0.10000000149011612
+    inputs = RenderInputs.read(
+        fields(tmp_path, sample_percent=as_blender_keeps_it, sigma=as_blender_keeps_it)
+    )
+    assert inputs.options["sample_percent"] == 0.1
+    assert inputs.options["sigma"] == 0.1
+    assert (
+        RegionInputs.read(
+            fields(tmp_path, cut_thickness=as_blender_keeps_it)
+        ).thickness_mm
+        == 0.1
+    )
+
+
+@pytest.mark.parametrize("name", ["skull", "Schädel 2", "skull.v2", "頭"])
+def test_plain_names_are_taken(name: str) -> None:
+    assert file_stem(name, "Mesh Filename") == name
+
+
+@pytest.mark.parametrize("name", ["skull.stl", " skull ", "skull.STL"])
+def test_the_suffix_is_not_doubled(name: str) -> None:
+    assert file_stem(name, "Mesh Filename") == "skull"
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["", " ", ".stl", ".", "..", "../x", "a/b", "a\\b", "/x", "C:x", "C:\\x", "a\0b", "a\nb", "x.", ".x", "con", "LPT1", "nul.txt", "a*b", "~/x"],
+)  # fmt: skip
+def test_names_that_are_none_or_leave_the_folder_are_refused(name: str) -> None:
+    with pytest.raises(RefusalError, match="Mesh Filename"):
+        file_stem(name, "Mesh Filename")
+
+
+@pytest.mark.parametrize("thickness", [0.0, -1.0, float("nan")])
+def test_a_region_needs_a_thickness(tmp_path: Path, thickness: float) -> None:
+    with pytest.raises(RefusalError, match="Thickness of Cut"):
+        RegionInputs.read(fields(tmp_path, cut_thickness=thickness))
+
+
+def test_a_region_never_overwrites_the_whole_mesh(tmp_path: Path) -> None:
+    with pytest.raises(RefusalError, match="overwrite"):
+        RegionInputs.read(fields(tmp_path, roi_name="BONE.stl"))
+
+
+def test_paths_are_resolved_before_they_are_looked_at(tmp_path: Path) -> None:
+    properties = fields(tmp_path, ct_directory="//ct", mesh_directory="//out")
+    inputs = RenderInputs.read(properties, resolve=lambda _path: str(tmp_path))
+    assert inputs.ct_directory == tmp_path
+
+
+def test_a_series_is_a_number_or_a_uid() -> None:
+    assert series_choice(" 2 ") == 2
+    assert series_choice("1.2.840.99") == "1.2.840.99"
+    assert series_choice("  ") is None

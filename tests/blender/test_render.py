@@ -1,0 +1,102 @@
+"""Rendering through the operator gives what the API gives, and puts it where a user expects it."""
+
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from conftest import Blender
+
+SETTINGS = {"hu_threshold": 400, "sigma": 1.5}
+
+
+def test_the_operator_gives_the_same_mesh_as_the_api(
+    blender: Blender, bonemesh: ModuleType, ct: Path, tmp_path: Path
+) -> None:
+    answer = blender.run("render", ct=ct, fields=SETTINGS)
+    assert answer["result"] == ["FINISHED"]
+    expected = bonemesh.render(ct, threshold_hu=400.0, sigma=1.5)
+    got = np.load(answer["mesh"])
+    assert np.array_equal(got["patient"], expected.vertices)
+    assert np.array_equal(got["triangles"], expected.triangles)
+    assert not got["selected"].any()
+
+    expected.save(tmp_path / "api.stl")
+    assert answer["files"] == ["bone.stl"]
+    assert (blender.out / "bone.stl").read_bytes() == (
+        tmp_path / "api.stl"
+    ).read_bytes()
+
+
+def test_the_object_is_in_its_place_and_says_where_it_comes_from(
+    blender: Blender, bonemesh: ModuleType, ct: Path
+) -> None:
+    answer = blender.run("render", ct=ct, fields=SETTINGS)
+    got = np.load(answer["mesh"])
+    centre = got["matrix"][:3, 3]
+    assert np.allclose(got["matrix"][:3, :3], np.eye(3))
+    assert np.allclose(centre, got["patient"].mean(axis=0, dtype=float), atol=1e-3)
+    assert np.allclose(got["local"] + centre, got["patient"], atol=1e-3)
+
+    assert answer["name"] == "bone"
+    assert answer["selected"] == ["bone"]
+    assert answer["units"] == ["METRIC", pytest.approx(0.001), "MILLIMETERS"]
+    assert answer["clips"]
+    assert all(start >= 0.5 and end >= 5000 for start, end in answer["clips"])
+    (series,) = bonemesh.find_series(ct)
+    properties = answer["properties"]
+    assert properties["bonemesh_threshold_hu"] == 400.0
+    assert properties["bonemesh_method"] == "alpha"
+    assert properties["bonemesh_series_uid"] == series.uid
+    assert properties["bonemesh_version"] == bonemesh.__version__
+    assert len(properties["bonemesh_spacing_mm"]) == 3
+
+
+def test_center_in_world_moves_the_object_and_not_its_file(
+    blender: Blender, ct: Path
+) -> None:
+    centred = blender.run("render", ct=ct, fields={"center_in_world": True})
+    stl = (blender.out / "bone.stl").read_bytes()
+    got = np.load(centred["mesh"])
+    assert np.array_equal(got["matrix"], np.eye(4))
+    blender.run("render", ct=ct, fields={"center_in_world": False})
+    assert (blender.out / "bone.stl").read_bytes() == stl
+
+
+@pytest.mark.parametrize(
+    ("fields", "keywords"),
+    [
+        ({"crop": "4:90, 4:100, 2:9"}, {"crop": "4:90, 4:100, 2:9"}),
+        (
+            {"sample_percent": 40.0, "sampler": "uniform"},
+            {"sample_percent": 40.0, "sampler": "uniform"},
+        ),
+        (
+            {"sample_percent": 33.3, "sampler": "random"},
+            {"sample_percent": 33.3, "sampler": "random"},
+        ),
+        (
+            {"sample_percent": 50.0, "sampler": "thesis-uniform"},
+            {"sample_percent": 50.0, "sampler": "thesis-uniform"},
+        ),
+        ({"sampler": "random"}, {}),
+        ({"series": "1"}, {"series": 1}),
+        ({"sigma": 2.2}, {"sigma": 2.2}),
+    ],
+)
+def test_every_advanced_setting_reaches_the_api(
+    blender: Blender, bonemesh: ModuleType, ct: Path, fields: dict, keywords: dict
+) -> None:
+    answer = blender.run("render", ct=ct, fields=fields)
+    expected = bonemesh.render(ct, **keywords)
+    got = np.load(answer["mesh"])
+    assert np.array_equal(got["patient"], expected.vertices)
+    assert np.array_equal(got["triangles"], expected.triangles)
+
+
+def test_a_series_is_chosen_by_its_uid(
+    blender: Blender, bonemesh: ModuleType, ct: Path
+) -> None:
+    (series,) = bonemesh.find_series(ct)
+    answer = blender.run("render", ct=ct, fields={"series": series.uid})
+    assert answer["properties"]["bonemesh_series_uid"] == series.uid

@@ -1,0 +1,66 @@
+"""A lassoed selection becomes the region that the API gives for the same vertices."""
+
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from conftest import Blender
+
+
+@pytest.mark.parametrize("in_world_centre", [False, True])
+def test_a_lassoed_region_is_the_apis(
+    blender: Blender,
+    bonemesh: ModuleType,
+    ct: Path,
+    tmp_path: Path,
+    in_world_centre: bool,
+) -> None:
+    fields = {"cut_thickness": 4.4, "center_in_world": in_world_centre}
+    answer = blender.run("select_region", ct=ct, fields=fields)
+    assert answer["result"] == ["FINISHED"]
+    bone, region = np.load(answer["before"]), np.load(answer["region"])
+    selected = np.flatnonzero(bone["selected"])
+    assert 0 < len(selected) < len(bone["selected"])
+
+    whole = bonemesh.render(ct)
+    assert np.array_equal(whole.vertices, bone["patient"])
+    expected = bonemesh.select_roi(whole, selected, thickness_mm=4.4)
+    assert np.array_equal(region["patient"], expected.vertices)
+    assert np.array_equal(region["triangles"], expected.triangles)
+    expected.save(tmp_path / "api.stl")
+    saved = (blender.out / "region.stl").read_bytes()
+    assert saved == (tmp_path / "api.stl").read_bytes()
+
+    # Beside its source: what was at one place in the patient is at one place in the world.
+    shift = bone["matrix"][:3, 3] - bone["patient"].mean(axis=0, dtype=float)
+    world = region["local"] + region["matrix"][:3, 3]
+    assert np.allclose(world, region["patient"] + shift, atol=1e-3)
+    assert np.allclose(shift, 0.0, atol=1e-3) is not in_world_centre
+
+
+def test_the_source_stays_as_it_was_and_the_user_goes_on(
+    blender: Blender, ct: Path
+) -> None:
+    answer = blender.run("select_region", ct=ct, fields={})
+    before, after = np.load(answer["before"]), np.load(answer["after"])
+    for array in ["local", "patient", "triangles", "matrix"]:
+        assert np.array_equal(before[array], after[array]), array
+    assert answer["mode"] == "EDIT"
+    assert answer["active"] == "bone"
+    assert answer["again"] == ["FINISHED"]
+    assert {"bone", "region", "second"} <= set(answer["objects"])
+    assert (blender.out / "second.stl").exists()
+
+
+def test_a_region_says_where_it_comes_from(
+    blender: Blender, bonemesh: ModuleType, ct: Path
+) -> None:
+    properties = blender.run("select_region", ct=ct, fields={})["properties"]
+    assert properties["bonemesh_thickness_mm"] == 5.0
+    assert properties["bonemesh_threshold_hu"] == 350.0
+    assert properties["bonemesh_method"] == "thesis"
+    assert properties["bonemesh_source"] == "bone"
+    assert properties["bonemesh_version"] == bonemesh.__version__
+    (series,) = bonemesh.find_series(ct)
+    assert properties["bonemesh_series_uid"] == series.uid
