@@ -1,106 +1,119 @@
-//! Point clouds from edge maps, their neighbourhoods and samples.
+//! Point clouds from edge maps: extraction, neighbour distances, samples and files.
+//!
+//! [`extract_points`] makes one point of every edge pixel, in the patient frame or in the
+//! published method's image frame, ordered by slice, row and column. Such a cloud keeps its
+//! integer [`Lattice`], on which later steps can decide ties exactly.
+//! [`mean_neighbour_distance`] is the published choice of alpha, [`sample`] thins a cloud, and
+//! [`read_cloud`] and [`write_cloud`] exchange it with other programs. Results are the same for
+//! any number of threads.
+//!
+//! Limits: at most `u32::MAX` points, all finite; files keep millimetres but no lattice.
+//!
+//! ```
+//! use bonemesh_cloud::{Frame, Percent, Sampler, extract_points, mean_neighbour_distance, sample};
+//! use bonemesh_segment::EdgeMap;
+//! use bonemesh_task::Task;
+//! use bonemesh_volume::{Affine, Geometry};
+//! use ndarray::Array3;
+//!
+//! let affine = Affine::from_axes([0.5, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 2.0], [0.0; 3]);
+//! let edges = EdgeMap {
+//!     edges: Array3::from_shape_fn([1, 3, 40], |(_, row, _)| row == 1),
+//!     geometry: Geometry::new([1, 3, 40], affine)?,
+//! };
+//! let task = Task::default();
+//! let cloud = extract_points(&edges, Frame::Patient, &task)?;
+//! assert_eq!(cloud.points_mm()[2], [1.0, 0.5, 0.0]);
+//!
+//! let two_nearest = mean_neighbour_distance(&cloud, 2, false, &task)?;
+//! assert!((two_nearest - 0.5).abs() < 1e-12);
+//! let kept = sample(&cloud, Sampler::Uniform, Percent::new(25.0)?, 0, &task)?;
+//! assert_eq!(kept.len(), 10);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Source: E. Rier, *Generation and segmentation of 3D models of bone from CT images based on 3D
+//! point clouds* (master's thesis).
+#![forbid(unsafe_code)]
 
-use bonemesh_segment::EdgeMap;
-use bonemesh_task::{Cancelled, Task};
-use bonemesh_volume::Affine;
+mod extract;
+mod io;
+mod neighbours;
+mod point_cloud;
+mod sampling;
+
+use std::path::PathBuf;
+
+use bonemesh_task::Cancelled;
+
+pub use extract::extract_points;
+pub use io::{read_cloud, write_cloud};
+pub use neighbours::mean_neighbour_distance;
+pub use point_cloud::{Frame, Lattice, PointCloud};
+pub use sampling::{Percent, Sampler, sample};
 
 /// What cannot be done with a cloud, and the remedy.
 #[non_exhaustive]
 #[derive(Debug, thiserror::Error)]
 pub enum CloudError {
+    /// A coordinate that is no number.
+    #[error("point {index} of the cloud is {point:?} mm; every coordinate must be finite")]
+    NotFinite {
+        /// Which point, counted from 0.
+        index: usize,
+        /// The point in mm.
+        point: [f64; 3],
+    },
+    /// More points than an index can count.
+    #[error("the cloud has {0} points, more than can be numbered (4294967295); crop the volume")]
+    TooMany(usize),
+    /// A cloud with too few points for neighbours.
+    #[error(
+        "a cloud of {0} point(s) has no neighbour distances; choose a threshold or crop box that leaves more edges"
+    )]
+    TooFew(usize),
+    /// A number of neighbours that leaves no distance.
+    #[error("{0} neighbours (the point itself counts as one) leave no distance; ask for 2 or more")]
+    NeighbourCount(usize),
+    /// A percentage that cannot be used.
+    #[error("{0} is no percentage to keep; choose a number above 0 and up to 100")]
+    Percent(f64),
+    /// A sampler that does not exist.
+    #[error("there is no sampler `{0}`; choose one of uniform, random, thesis-uniform")]
+    Sampler(String),
+    /// A file name whose ending names no format.
+    #[error("{} ends in no format for clouds; name it .npy, .ply or .xyz", path.display())]
+    Extension {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A file that cannot be read.
+    #[error("cannot read {} ({source}); check that it exists and may be read", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system says.
+        source: std::io::Error,
+    },
+    /// A file that cannot be written.
+    #[error(
+        "cannot write {} ({source}); check that its folder exists, may be written and has room", path.display()
+    )]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system says.
+        source: std::io::Error,
+    },
+    /// A file that does not hold a cloud.
+    #[error("{} holds no point cloud: {reason}", path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, and what is expected.
+        reason: String,
+    },
     /// Stopped on request.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-}
-
-/// The frame in which a cloud's millimetres are given.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Frame {
-    /// DICOM patient frame (LPS).
-    #[default]
-    Patient,
-    /// The published method's frame, see [`bonemesh_volume::Geometry::image_from_voxel`].
-    Image,
-}
-
-/// Points in mm, with their integer lattice where they came from voxels.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PointCloud {
-    points_mm: Vec<[f64; 3]>,
-    lattice: Option<Lattice>,
-}
-
-/// Integer coordinates `(column, row, slice)` of a cloud's points and the map to mm.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Lattice {
-    /// `(column, row, slice)` of each point.
-    pub coordinates: Vec<[i32; 3]>,
-    /// Lattice coordinates to mm.
-    pub frame_from_lattice: Affine,
-}
-
-impl PointCloud {
-    /// Points in mm.
-    pub fn points_mm(&self) -> &[[f64; 3]] {
-        &self.points_mm
-    }
-
-    /// The lattice, where the points came from voxels.
-    pub fn lattice(&self) -> Option<&Lattice> {
-        self.lattice.as_ref()
-    }
-
-    /// A cloud of free points.
-    ///
-    /// # Errors
-    /// when a coordinate is not finite
-    pub fn from_points(points_mm: Vec<[f64; 3]>) -> Result<Self, CloudError> {
-        Ok(Self {
-            points_mm,
-            lattice: None,
-        })
-    }
-
-    /// A cloud of lattice points (with lattice).
-    ///
-    /// # Errors
-    /// see CloudError
-    pub fn from_lattice(lattice: Lattice) -> Result<Self, CloudError> {
-        let _ = lattice;
-        todo!()
-    }
-
-    /// The points of `indices`, in that order.
-    #[must_use]
-    pub fn subset(&self, indices: &[u32]) -> Self {
-        let _ = indices;
-        todo!()
-    }
-}
-
-/// One point an edge pixel, ordered by slice, row, column.
-///
-/// # Errors
-/// see CloudError
-pub fn extract_points(
-    edges: &EdgeMap,
-    frame: Frame,
-    task: &Task,
-) -> Result<PointCloud, CloudError> {
-    let _ = (edges, frame, task);
-    todo!()
-}
-
-/// Mean over all points of the mean distance (mm) to the `k` nearest neighbours.
-///
-/// # Errors
-/// see CloudError
-pub fn mean_neighbour_distance(
-    cloud: &PointCloud,
-    k: usize,
-    include_self: bool,
-    task: &Task,
-) -> Result<f64, CloudError> {
-    let _ = (cloud, k, include_self, task);
-    todo!()
 }
