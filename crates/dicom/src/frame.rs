@@ -14,6 +14,7 @@ use crate::codestream::declared;
 use crate::error::FileError;
 use crate::file::{inflate, syntax};
 use crate::header::{Layout, Storage};
+use crate::jpeg_ls;
 
 /// Largest frame that is decompressed; a small file may declare any size.
 const MAX_COMPRESSED_PIXELS: usize = 8192 * 8192;
@@ -25,7 +26,14 @@ const ITEM: [u8; 4] = [0xfe, 0xff, 0x00, 0xe0];
 
 /// Whether pixels stored in this transfer syntax can be decoded.
 pub(crate) fn is_readable(syntax_uid: &str) -> bool {
-    syntax(syntax_uid).is_ok_and(TransferSyntax::can_decode_all)
+    is_jpeg_ls(syntax_uid) || syntax(syntax_uid).is_ok_and(TransferSyntax::can_decode_all)
+}
+
+fn is_jpeg_ls(syntax_uid: &str) -> bool {
+    matches!(
+        syntax_uid,
+        uids::JPEGLS_LOSSLESS | uids::JPEGLS_NEAR_LOSSLESS
+    )
 }
 
 /// Reads and, where needed, decompresses frame `index` (from 0) of a file.
@@ -178,10 +186,18 @@ fn decompress(
         let (name, uid) = (syntax.name(), syntax.uid());
         FileError::Codec(format!("{name}, {uid}: {why}"))
     };
+    check_size(&frame, syntax, layout).map_err(|why| named(&why))?;
+    if is_jpeg_ls(syntax.uid()) {
+        let samples = jpeg_ls::decode(&frame, layout.rows, layout.columns).map_err(named)?;
+        let width = layout.bits_allocated as usize / 8;
+        return Ok(samples
+            .iter()
+            .flat_map(|v| v.to_le_bytes().into_iter().take(width))
+            .collect());
+    }
     let reader = syntax
         .pixel_data_reader()
         .ok_or_else(|| named("not supported"))?;
-    check_size(&frame, syntax, layout).map_err(|why| named(&why))?;
     let single = SingleFrame {
         syntax_uid: syntax.uid(),
         layout,

@@ -12,7 +12,7 @@
 //! slice by slice.
 //!
 //! Limits: modality CT (or none given), one sample a pixel. Transfer syntaxes: uncompressed,
-//! deflated, RLE, JPEG baseline (8 bit) and lossless, JPEG 2000; others are named and refused.
+//! deflated, RLE, JPEG baseline (8 bit) and lossless, JPEG-LS, JPEG 2000; others are named and refused.
 //! Nothing that identifies the patient is read from the files.
 //!
 //! ```no_run
@@ -44,6 +44,7 @@ mod frame;
 mod group;
 mod header;
 mod hounsfield;
+mod jpeg_ls;
 mod orientation;
 mod read;
 mod scan;

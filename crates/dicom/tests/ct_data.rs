@@ -102,6 +102,7 @@ same_as_base! {
     rle_is_the_base: "04_rle",
     jpeg_lossless_first_order_is_the_base: "05_jpeg_lossless_sv1",
     jpeg_lossless_is_the_base: "06_jpeg_lossless_p14",
+    jpeg_ls_lossless_is_the_base: "07_jpegls_lossless",
     jpeg_2000_lossless_is_the_base: "09_j2k_lossless",
     names_and_numbers_do_not_order_slices: "20_no_instance_no_location_random_names",
     monochrome1_changes_no_hounsfield_unit: "24_monochrome1_label_only",
@@ -109,6 +110,11 @@ same_as_base! {
     bits_above_the_high_bit_are_ignored: "26_12bit_garbage_in_high_nibble",
     head_to_foot_is_put_in_order: "28_reverse_order_head_to_foot",
     a_file_without_preamble_is_read: "41_no_preamble_no_meta_implicit",
+}
+
+#[test]
+fn jpeg_ls_near_lossless_is_within_2_hu() {
+    assert!(difference_from_base("hard/08_jpegls_near_unsigned12") <= 2.0);
 }
 
 #[test]
