@@ -60,19 +60,11 @@ pub enum RoiError {
     },
     /// No vertex of the mesh belongs to the region but the selected ones.
     #[error(
-        "nothing was found behind the selection within {thickness_mm} mm; raise the thickness to that of the bone, or select a patch that faces outward"
+        "nothing was found behind the selection for {thickness_mm} mm; set the thickness to that of the bone (what is nearer than half of it is not found) or select a flatter patch"
     )]
     NothingBehind {
         /// The thickness asked for.
         thickness_mm: f64,
-    },
-    /// The region's points enclose no volume.
-    #[error(
-        "the {points} points of the region lie in one plane; select a patch of several slices or raise the thickness"
-    )]
-    Flat {
-        /// How many points there are.
-        points: usize,
     },
     /// The selection file cannot be read.
     #[error("cannot read the selection file {} ({reason}); check the path", path.display())]

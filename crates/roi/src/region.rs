@@ -11,10 +11,6 @@ use crate::{Method, RoiError, ThicknessMm, thesis};
 /// Neighbours over which alpha is averaged, the point itself included, as for whole clouds.
 const NEIGHBOURS: usize = 100;
 
-/// Points whose distance from a plane is below this part of their extent lie in it: 32-bit files
-/// do not keep coordinates better than that.
-const FLATNESS: f64 = 1e-6;
-
 /// The bone under a selection as a mesh of its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region {
@@ -42,7 +38,7 @@ pub struct Region {
 ///
 /// # Errors
 /// [`RoiError`]: nothing or one vertex selected, an index the mesh does not have, no normal, a mesh
-/// without slices, nothing behind the selection, a flat region, or the work was cancelled.
+/// without slices, nothing behind the selection, or the work was cancelled.
 pub fn select_region(
     mesh: &TriangleMesh,
     selected: &[u32],
@@ -60,11 +56,8 @@ pub fn select_region(
         });
     }
     let points = region_points(mesh.vertices_mm(), selection.indices(), &behind.kept);
-    if is_flat(&points) {
-        return Err(RoiError::Flat {
-            points: points.len(),
-        });
-    }
+    // Never all in one plane: in the plane of the selection, a point within t (Manhattan) of a
+    // selected one is at least t from its projection along the normal, so it was not kept.
     let cloud = PointCloud::from_points(points)?;
     let alpha_mm = mean_neighbour_distance(&cloud, NEIGHBOURS, true, task)?;
     let AlphaSurface {
@@ -95,31 +88,6 @@ fn region_points(vertices_mm: &[[f64; 3]], selected: &[u32], kept: &[u32]) -> Ve
         .collect()
 }
 
-/// Whether all points lie in one plane (or line, or place), to within [`FLATNESS`].
-fn is_flat(points: &[[f64; 3]]) -> bool {
-    let Some(&first) = points.first() else {
-        return true;
-    };
-    let from_first: Vec<[f64; 3]> = points.iter().map(|&p| minus(p, first)).collect();
-    let longest = |vectors: &[[f64; 3]]| -> [f64; 3] {
-        let length = |v: &[f64; 3]| dot(*v, *v);
-        let longer = vectors
-            .iter()
-            .max_by(|a, b| length(a).total_cmp(&length(b)));
-        longer.copied().unwrap_or_default()
-    };
-    let u = longest(&from_first);
-    let extent = dot(u, u).sqrt();
-    let normals: Vec<[f64; 3]> = from_first.iter().map(|&v| cross(u, v)).collect();
-    let normal = longest(&normals);
-    let scale = dot(normal, normal).sqrt();
-    // `scale` is the extent times the width, the product a volume.
-    scale <= FLATNESS * extent * extent
-        || from_first
-            .iter()
-            .all(|&v| dot(v, normal).abs() <= FLATNESS * extent * scale)
-}
-
 /// `a - b`.
 pub(crate) fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
@@ -142,18 +110,6 @@ pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn points_in_a_plane_are_flat_and_a_step_out_of_it_is_not() {
-        let mut points: Vec<[f64; 3]> = (0..20)
-            .map(|i| (f64::from(i % 5), f64::from(i / 5)))
-            .map(|(u, v)| [u, v, 2.0 * u - 3.0 * v + 700.0].map(|c| f64::from(c as f32)))
-            .collect();
-        assert!(is_flat(&points));
-        assert!(is_flat(&points[..1]) && is_flat(&points[..2]) && is_flat(&[]));
-        points.push([0.0, 0.0, 700.1]);
-        assert!(!is_flat(&points));
-    }
 
     #[test]
     fn each_place_of_a_region_is_there_once() {
