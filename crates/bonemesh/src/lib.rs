@@ -1,1 +1,64 @@
-//! From a CT folder to a bone mesh and a selected region: settings, steps, command line.
+//! From a folder of CT files to a bone mesh, and from a selection on it to a region of its own.
+//!
+//! This is the one crate that programs use; it fixes the order of the steps and adds nothing
+//! to them:
+//!
+//! ```text
+//! folder -> Series -> Volume -> Mask -> EdgeMap -> PointCloud -> tetrahedra -> TriangleMesh -> region
+//! ```
+//!
+//! Promise: the result depends only on the files and the [`Settings`], never on the number of
+//! threads; every failure is one [`Error`] whose message names the file or value and the remedy;
+//! nothing is left half-written.
+//!
+//! Limits: the surface of method `alpha` is the boundary of a regularised alpha complex. It has
+//! no open edge but can touch itself along edges and vertices, which [`check`] reports.
+//!
+//! ```
+//! use bonemesh::{Phantom, Settings, Task, render_volume, scan_phantom};
+//!
+//! let task = Task::default();
+//! let shell = Phantom::SphereShell;
+//! let volume = scan_phantom(shell, &shell.settings().coarser(2.0), &task)?;
+//! let rendered = render_volume(&volume, &Settings::default(), &task)?;
+//! assert!(rendered.report.watertight);
+//! # Ok::<(), bonemesh::Error>(())
+//! ```
+//!
+//! The method is that of E. Rier, *Generation and segmentation of 3D models of bone from CT
+//! images based on 3D point clouds*, `MASc` thesis, McMaster University.
+
+pub mod cli;
+mod error;
+mod memory;
+mod region;
+mod render;
+mod report;
+mod settings;
+
+pub use error::Error;
+pub use region::{RegionRequest, RegionResult, select_roi};
+pub use render::{Rendered, mesh_cloud, point_cloud, render, render_volume};
+pub use report::{CheckReport, RegionReport, RenderReport, Seconds, check};
+pub use settings::{Method, Sampling, Settings};
+
+pub use bonemesh_cloud::{
+    CloudError, Frame, Percent, PointCloud, Sampler, mean_neighbour_distance, sample,
+};
+pub use bonemesh_delaunay::{DelaunayError, Points, Tetrahedra, tetrahedralize};
+pub use bonemesh_dicom::{DicomError, Scan, Series, SeriesChoice, find_series, read_series};
+pub use bonemesh_mesh::{MeshError, TriangleMesh, check_target, read_mesh, write_mesh};
+pub use bonemesh_phantom::{
+    Phantom, PhantomError, ScanSettings, WrittenPhantom, model_images, scan as scan_phantom,
+    write_phantom,
+};
+pub use bonemesh_roi::{Method as RoiMethod, RoiError, ThicknessMm};
+pub use bonemesh_segment::{
+    CannySettings, HuThreshold, SegmentError, canny, detect_edges, threshold,
+};
+pub use bonemesh_surface::{SurfaceError, alpha_surface};
+pub use bonemesh_task::{Cancel, Cancelled, Progress, Task, pool};
+pub use bonemesh_volume::{Affine, CropBox, CropError, Geometry, Volume, VolumeError, Voxels};
+
+/// The version of this program, written into reports and objects.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -1,0 +1,349 @@
+//! What can be written after `bonemesh`, turned into values that cannot be wrong.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use bonemesh_cloud::{Frame, Percent, Sampler};
+use bonemesh_dicom::SeriesChoice;
+use bonemesh_mesh::TriangleMesh;
+use bonemesh_phantom::{Orientation, Phantom, PhantomError, ScanSettings};
+use bonemesh_roi::{Method as RoiMethod, ThicknessMm};
+use bonemesh_segment::{CannySettings, HuThreshold};
+use bonemesh_volume::CropBox;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use crate::settings::{Method, Sampling, Settings};
+
+/// Turns a folder of CT images into a mesh of the bone, and a selection on it into a region.
+#[derive(Debug, Parser)]
+#[command(name = "bonemesh", version, max_term_width = 100)]
+pub(super) struct Arguments {
+    /// Print one JSON object on stdout and nothing else there.
+    #[arg(long, global = true)]
+    pub(super) json: bool,
+    #[command(subcommand)]
+    pub(super) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// List the series in a folder, what was left out, geometry and warnings.
+    Info {
+        /// Folder of CT files; sub-folders are searched too.
+        directory: PathBuf,
+    },
+    /// Make the bone's mesh from a folder of CT files.
+    Render(Render),
+    /// Make the point cloud of the bone's edges from a folder of CT files.
+    Cloud(CloudArguments),
+    /// Make a mesh from a point cloud.
+    Mesh(MeshArguments),
+    /// Take the region under selected vertices out of a mesh.
+    Roi(Roi),
+    /// Check the topology of a mesh: watertight, manifold, winding, components, volume.
+    Check {
+        /// Mesh file (.stl, .ply).
+        mesh: PathBuf,
+    },
+    /// Write a phantom as a DICOM CT series, with its truth beside it.
+    Phantom(PhantomArguments),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct EdgeArguments {
+    /// Bone is strictly above this Hounsfield value.
+    #[arg(long, default_value = "350", allow_negative_numbers = true, value_parser = hu)]
+    hu: HuThreshold,
+    /// Canny's smoothing in pixels.
+    #[arg(long, default_value = "1.0", value_parser = canny)]
+    sigma: CannySettings,
+    /// Which series: its UID or its number in `bonemesh info`.
+    #[arg(long)]
+    series: Option<SeriesChoice>,
+    /// Part of the volume to use: columns, rows, slices, each first:end (end not included).
+    #[arg(long, value_name = "I0:I1,J0:J1,K0:K1")]
+    crop: Option<CropBox>,
+    #[command(flatten)]
+    sampling: SamplingArguments,
+    /// Worker threads; the result does not depend on it.
+    #[arg(long)]
+    threads: Option<NonZeroUsize>,
+}
+
+#[derive(Debug, Args)]
+struct SamplingArguments {
+    /// Keep this percentage of the points (above 0, at most 100).
+    #[arg(long, value_name = "PERCENT", value_parser = percent)]
+    sample: Option<Percent>,
+    /// How the kept points are chosen: uniform, random or thesis-uniform.
+    #[arg(long, default_value = "uniform", requires = "sample")]
+    sampler: Sampler,
+    /// Seed of the random sampler.
+    #[arg(long, default_value_t = 0, requires = "sample")]
+    seed: u64,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SurfaceArguments {
+    /// How the surface is made.
+    #[arg(long, default_value = "alpha")]
+    method: Method,
+    /// Largest circumradius kept in mm [default: mean distance to 100 neighbours].
+    #[arg(long, value_name = "MM", value_parser = length_mm)]
+    alpha: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Render {
+    /// Folder of CT files; sub-folders are searched too.
+    pub(super) directory: PathBuf,
+    /// Mesh file to write (.stl, .ply).
+    #[arg(short, long)]
+    pub(super) output: PathBuf,
+    #[command(flatten)]
+    pub(super) edges: EdgeArguments,
+    #[command(flatten)]
+    pub(super) surface: SurfaceArguments,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CloudArguments {
+    /// Folder of CT files; sub-folders are searched too.
+    pub(super) directory: PathBuf,
+    /// Cloud file to write (.npy, .ply, .xyz).
+    #[arg(short, long)]
+    pub(super) output: PathBuf,
+    /// Frame of the coordinates.
+    #[arg(long, value_enum, default_value = "patient")]
+    pub(super) frame: FrameName,
+    #[command(flatten)]
+    pub(super) edges: EdgeArguments,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(super) enum FrameName {
+    /// DICOM patient frame (LPS).
+    Patient,
+    /// x = column dx - dx/2, y = row dy - dy/2, z = slice location.
+    Image,
+}
+
+impl From<FrameName> for Frame {
+    fn from(name: FrameName) -> Self {
+        match name {
+            FrameName::Patient => Self::Patient,
+            FrameName::Image => Self::Image,
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(super) struct MeshArguments {
+    /// Cloud file (.npy, .ply, .xyz).
+    pub(super) cloud: PathBuf,
+    /// Mesh file to write (.stl, .ply).
+    #[arg(short, long)]
+    pub(super) output: PathBuf,
+    #[command(flatten)]
+    pub(super) surface: SurfaceArguments,
+    /// Worker threads; the result does not depend on it.
+    #[arg(long)]
+    pub(super) threads: Option<NonZeroUsize>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Roi {
+    /// Mesh file (.stl, .ply).
+    pub(super) mesh: PathBuf,
+    #[command(flatten)]
+    pub(super) selection: Selection,
+    /// How deep the region reaches below the selection, in mm.
+    #[arg(long, value_name = "MM", value_parser = thickness)]
+    pub(super) thickness: ThicknessMm,
+    /// Mesh file to write (.stl, .ply).
+    #[arg(short, long)]
+    pub(super) output: PathBuf,
+    /// How the region is found.
+    #[arg(long, default_value = "thesis")]
+    pub(super) method: RoiMethod,
+    /// Worker threads; the result does not depend on it.
+    #[arg(long)]
+    pub(super) threads: Option<NonZeroUsize>,
+}
+
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+pub(super) struct Selection {
+    /// Text file with one vertex index a line, of the mesh as read and vertex-merged in file order.
+    #[arg(long = "selection", value_name = "FILE")]
+    pub(super) file: Option<PathBuf>,
+    /// Select every vertex within RADIUS mm of the point X,Y,Z instead.
+    #[arg(long, value_name = "X,Y,Z,RADIUS", allow_negative_numbers = true)]
+    pub(super) within: Option<Ball>,
+}
+
+/// A ball in the mesh's frame, in mm.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ball {
+    centre_mm: [f64; 3],
+    radius_mm: f64,
+}
+
+impl Ball {
+    /// The vertices of `mesh` inside the ball.
+    pub(super) fn vertices(&self, mesh: &TriangleMesh) -> Vec<u32> {
+        let squared = self.radius_mm * self.radius_mm;
+        let inside = |v: &[f64; 3]| {
+            (0..3)
+                .map(|i| (v[i] - self.centre_mm[i]).powi(2))
+                .sum::<f64>()
+                <= squared
+        };
+        (0_u32..)
+            .zip(mesh.vertices_mm())
+            .filter_map(|(i, v)| inside(v).then_some(i))
+            .collect()
+    }
+}
+
+impl FromStr for Ball {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Result<Vec<f64>, String> = text.split(',').map(|n| number(n.trim())).collect();
+        match numbers?[..] {
+            [x, y, z, radius_mm]
+                if radius_mm > 0.0 && [x, y, z, radius_mm].iter().all(|v| v.is_finite()) =>
+            {
+                Ok(Self {
+                    centre_mm: [x, y, z],
+                    radius_mm,
+                })
+            }
+            _ => Err(format!(
+                "`{text}` is no ball; write x,y,z,radius in mm with a radius above 0, for example 0,-90,40,20"
+            )),
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(super) struct PhantomArguments {
+    /// Name of the phantom.
+    #[arg(value_parser = phantom, long_help = phantom_names())]
+    pub(super) name: Phantom,
+    /// Folder to make; the series goes to its sub-folder `dicom`, the truth to `truth.json`.
+    pub(super) directory: PathBuf,
+    /// Make pixels and slices this many times as large, over the same field of view.
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = length_mm)]
+    coarser: f64,
+    /// Direction of the slices: axial, reversed, sagittal, coronal, oblique, tilted, feet-first.
+    #[arg(long, default_value = "axial")]
+    orientation: Orientation,
+    /// Leave out blur and noise.
+    #[arg(long)]
+    ideal: bool,
+    /// Seed of the noise.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+}
+
+impl PhantomArguments {
+    /// How the phantom is scanned.
+    pub(super) fn settings(&self) -> ScanSettings {
+        let settings = ScanSettings {
+            seed: self.seed,
+            orientation: self.orientation.clone(),
+            ..self.name.settings().coarser(self.coarser)
+        };
+        if self.ideal {
+            settings.ideal()
+        } else {
+            settings
+        }
+    }
+}
+
+fn phantom(name: &str) -> Result<Phantom, String> {
+    name.parse().map_err(|e: PhantomError| e.to_string())
+}
+
+fn phantom_names() -> String {
+    let mut text = String::from("Name of the phantom:");
+    for phantom in Phantom::ALL {
+        text.push_str(&format!(
+            "\n  {:16}{}",
+            phantom.name(),
+            phantom.description()
+        ));
+    }
+    text
+}
+
+impl EdgeArguments {
+    /// The settings for rendering with `surface`.
+    pub(super) fn settings(&self, surface: Option<&SurfaceArguments>) -> Settings {
+        Settings {
+            threshold: self.hu,
+            canny: self.sigma,
+            crop: self.crop.clone(),
+            series: self.series.clone(),
+            sampling: self.sampling.settings(),
+            threads: self.threads,
+            ..surface.map(SurfaceArguments::settings).unwrap_or_default()
+        }
+    }
+}
+
+impl SamplingArguments {
+    fn settings(&self) -> Option<Sampling> {
+        self.sample.map(|percent| Sampling {
+            percent,
+            sampler: self.sampler,
+            seed: self.seed,
+        })
+    }
+}
+
+impl SurfaceArguments {
+    /// The settings of the surface step.
+    pub(super) fn settings(&self) -> Settings {
+        Settings {
+            method: self.method,
+            alpha_mm: self.alpha,
+            ..Settings::default()
+        }
+    }
+}
+
+fn hu(text: &str) -> Result<HuThreshold, String> {
+    let hu = number(text)?;
+    HuThreshold::new(hu).map_err(|e| e.to_string())
+}
+
+fn canny(text: &str) -> Result<CannySettings, String> {
+    let standard = CannySettings::default();
+    CannySettings::new(number(text)?, standard.low(), standard.high()).map_err(|e| e.to_string())
+}
+
+fn percent(text: &str) -> Result<Percent, String> {
+    Percent::new(number(text)?).map_err(|e| e.to_string())
+}
+
+fn thickness(text: &str) -> Result<ThicknessMm, String> {
+    ThicknessMm::new(number(text)?).map_err(|e| e.to_string())
+}
+
+fn length_mm(text: &str) -> Result<f64, String> {
+    let mm = number(text)?;
+    if mm > 0.0 {
+        Ok(mm)
+    } else {
+        Err(format!("{mm} mm is no length; use a number above 0"))
+    }
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| format!("`{text}` is no number"))
+}

@@ -1,0 +1,126 @@
+//! Each command: call the library, say what came of it.
+
+use std::path::Path;
+use std::time::Instant;
+
+use bonemesh_cloud::{read_cloud, write_cloud};
+use bonemesh_dicom::{find_series, read_series};
+use bonemesh_mesh::{read_mesh, write_mesh};
+use bonemesh_phantom::write_phantom;
+use bonemesh_roi::read_selection;
+use bonemesh_task::{Task, pool};
+use serde_json::json;
+
+use super::arguments::{CloudArguments, Command, MeshArguments, PhantomArguments, Render, Roi};
+use super::output::Answer;
+use super::text;
+use crate::region::{RegionRequest, select_roi};
+use crate::render::{Rendered, mesh_cloud, point_cloud, render};
+use crate::{Error, Settings, check};
+
+/// Runs `command`; the error is the one line that the user reads.
+pub(super) fn run(command: &Command, task: &Task) -> Result<Answer, String> {
+    match command {
+        Command::Info { directory } => info(directory, task),
+        Command::Render(arguments) => run_render(arguments, task),
+        Command::Cloud(arguments) => run_cloud(arguments, task),
+        Command::Mesh(arguments) => run_mesh(arguments, task),
+        Command::Roi(arguments) => run_roi(arguments, task),
+        Command::Check { mesh } => run_check(mesh, task),
+        Command::Phantom(arguments) => run_phantom(arguments, task),
+    }
+    .map_err(|e| e.to_string())
+}
+
+fn info(directory: &Path, task: &Task) -> Result<Answer, Error> {
+    let scan = pool(None)?.install(|| find_series(directory, task))?;
+    Ok(Answer::new(&scan, text::scanned(&scan)))
+}
+
+fn run_render(arguments: &Render, task: &Task) -> Result<Answer, Error> {
+    bonemesh_mesh::check_target(&arguments.output)?;
+    let settings = arguments.edges.settings(Some(&arguments.surface));
+    let rendered = render(&arguments.directory, &settings, task)?;
+    save(rendered, &arguments.output, task)
+}
+
+fn run_mesh(arguments: &MeshArguments, task: &Task) -> Result<Answer, Error> {
+    bonemesh_mesh::check_target(&arguments.output)?;
+    let cloud = read_cloud(&arguments.cloud)?;
+    let settings = Settings {
+        threads: arguments.threads,
+        ..arguments.surface.settings()
+    };
+    let rendered = mesh_cloud(&cloud, &settings, task)?;
+    save(rendered, &arguments.output, task)
+}
+
+fn save(rendered: Rendered, file: &Path, task: &Task) -> Result<Answer, Error> {
+    let Rendered { mesh, mut report } = rendered;
+    let clock = Instant::now();
+    write_mesh(file, &mesh, task)?;
+    report.written(clock.elapsed().as_secs_f64());
+    Ok(Answer::new(&report, text::rendered(&report, file)).with("output", file.to_string_lossy()))
+}
+
+fn run_cloud(arguments: &CloudArguments, task: &Task) -> Result<Answer, Error> {
+    let settings = arguments.edges.settings(None);
+    let workers = pool(settings.threads)?;
+    let (volume, warnings) = workers.install(|| -> Result<_, Error> {
+        let scan = find_series(&arguments.directory, task)?;
+        Ok(read_series(scan.choose(settings.series.as_ref())?, task)?)
+    })?;
+    let cloud = point_cloud(&volume, &settings, arguments.frame.into(), task)?;
+    write_cloud(&cloud, &arguments.output)?;
+    let points = cloud.points_mm().len();
+    let text = format!("{}\n  {points} points\n", arguments.output.display());
+    let report = json!({
+        "points": points,
+        "output": arguments.output.to_string_lossy(),
+        "warnings": warnings,
+    });
+    Ok(Answer::new(&report, text))
+}
+
+fn run_roi(arguments: &Roi, task: &Task) -> Result<Answer, Error> {
+    bonemesh_mesh::check_target(&arguments.output)?;
+    let mesh = read_mesh(&arguments.mesh, task)?;
+    let selected = match (&arguments.selection.file, &arguments.selection.within) {
+        (_, Some(ball)) => ball.vertices(&mesh),
+        (Some(file), None) => read_selection(file)?,
+        (None, None) => Vec::new(),
+    };
+    let request = RegionRequest {
+        thickness: arguments.thickness,
+        method: arguments.method,
+        threads: arguments.threads,
+    };
+    let region = select_roi(&mesh, &selected, &request, task)?;
+    write_mesh(&arguments.output, &region.mesh, task)?;
+    let text = text::region(&region.report, &arguments.output);
+    Ok(Answer::new(&region.report, text).with("output", arguments.output.to_string_lossy()))
+}
+
+fn run_check(file: &Path, task: &Task) -> Result<Answer, Error> {
+    let mesh = read_mesh(file, task)?;
+    let report = check(&mesh, task)?;
+    Ok(Answer::new(&report, text::checked(&report, file)))
+}
+
+fn run_phantom(arguments: &PhantomArguments, task: &Task) -> Result<Answer, Error> {
+    let settings = arguments.settings();
+    let written = pool(None)?
+        .install(|| write_phantom(arguments.name, &arguments.directory, &settings, task))?;
+    let text = format!(
+        "{}\n  {} slices\n{}\n  what is known of the body\n",
+        written.series.display(),
+        written.files.len(),
+        written.truth.display()
+    );
+    let report = json!({
+        "series": written.series.to_string_lossy(),
+        "slices": written.files.len(),
+        "truth": written.truth.to_string_lossy(),
+    });
+    Ok(Answer::new(&report, text))
+}

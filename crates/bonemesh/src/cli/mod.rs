@@ -1,0 +1,48 @@
+//! The `bonemesh` command: arguments in, text or one JSON object out.
+//!
+//! Exit codes: 0 done, 1 a failure that one line on stderr explains, 2 unusable arguments.
+//! Progress goes to stderr and only to a terminal. Ctrl-C stops the work and leaves no file.
+
+mod arguments;
+mod commands;
+mod output;
+mod progress;
+mod text;
+
+use std::ffi::OsString;
+
+use bonemesh_task::Task;
+use clap::Parser;
+
+use arguments::Arguments;
+
+/// Exit code for a failure that a message explains.
+const FAILED: u8 = 1;
+/// Exit code for arguments that cannot be used.
+const USAGE: u8 = 2;
+
+/// Runs the command with `arguments` (the program's name first) and gives its exit code.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(message) => {
+            // Printing can only fail when the stream is closed, and then nobody reads it.
+            let _ = message.print();
+            return if message.use_stderr() { USAGE } else { 0 };
+        }
+    };
+    let task = Task::default();
+    let switch = task.cancel().clone();
+    // A second registration in one process keeps the first switch; Ctrl-C then ends the process.
+    let _ = ctrlc::set_handler(move || switch.cancel());
+    let watcher = progress::watch(&task);
+    let result = commands::run(&arguments.command, &task);
+    watcher.finish();
+    match result.and_then(|answer| output::print(&answer, arguments.json)) {
+        Ok(()) => 0,
+        Err(message) => {
+            eprintln!("bonemesh: {message}");
+            FAILED
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! Reports in words.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use bonemesh_dicom::Scan;
+
+use crate::report::{CheckReport, RegionReport, RenderReport};
+
+/// Cubic millimetres in a cubic centimetre.
+const MM3_PER_CM3: f64 = 1000.0;
+
+/// `info`.
+pub(super) fn scanned(scan: &Scan) -> String {
+    let mut text = String::new();
+    let mut line = |l: String| {
+        text.push_str(&l);
+        text.push('\n');
+    };
+    for series in &scan.series {
+        let description = if series.description.is_empty() {
+            "no description"
+        } else {
+            &series.description
+        };
+        line(format!("{}  {description}", series.number));
+        line(format!("   UID {}", series.uid));
+        let [dx, dy, dz] = series.spacing_mm;
+        line(format!(
+            "   {} {} slices of {} x {} pixels; {dx:.4} mm between columns, {dy:.4} between rows, {dz:.4} between slices",
+            series.modality, series.slices, series.columns, series.rows
+        ));
+        line(format!("   {}", series.orientation));
+        line(format!(
+            "   {}; about {} MiB in memory",
+            series.transfer_syntax,
+            series.estimated_memory_bytes.div_ceil(1 << 20)
+        ));
+        for warning in &series.warnings {
+            line(format!("   note: {warning}"));
+        }
+    }
+    if !scan.left_out.is_empty() {
+        line(format!("left out: {}", scan.left_out.len()));
+        for left_out in &scan.left_out {
+            line(format!(
+                "   {}: {}",
+                left_out.path.display(),
+                left_out.reason
+            ));
+        }
+    }
+    text
+}
+
+/// `render` and `mesh`.
+pub(super) fn rendered(report: &RenderReport, file: &Path) -> String {
+    let mut text = String::new();
+    let mut line = |l: String| {
+        text.push_str(&l);
+        text.push('\n');
+    };
+    line(format!("{}", file.display()));
+    line(format!(
+        "  {} triangles, {} vertices, {} components, {:.1} cm3",
+        report.triangles,
+        report.vertices,
+        report.components,
+        report.volume_mm3 / MM3_PER_CM3
+    ));
+    line(format!(
+        "  {} points, alpha {:.3} mm, {} tetrahedra",
+        report.points, report.alpha_mm, report.tetrahedra
+    ));
+    line(format!("  {}", verdict(report.watertight, report.manifold)));
+    let s = &report.seconds;
+    line(format!(
+        "  {:.2} s: read {:.2}, edges {:.2}, cloud {:.2}, neighbours {:.2}, tetrahedra {:.2}, surface {:.2}, write {:.2}",
+        s.total, s.read, s.edges, s.cloud, s.neighbours, s.tetrahedra, s.surface, s.write
+    ));
+    for warning in &report.warnings {
+        line(format!("  note: {warning}"));
+    }
+    text
+}
+
+/// `roi`.
+pub(super) fn region(report: &RegionReport, file: &Path) -> String {
+    format!(
+        "{}\n  {} selected vertices, {} points behind them, thickness {} mm\n  {} triangles, {} vertices, {} components, {:.2} cm3\n  {}\n  {:.2} s\n",
+        file.display(),
+        report.selected,
+        report.kept_points,
+        report.thickness_mm,
+        report.triangles,
+        report.vertices,
+        report.components,
+        report.volume_mm3 / MM3_PER_CM3,
+        verdict(report.watertight, report.manifold),
+        report.seconds,
+    )
+}
+
+/// `check`.
+pub(super) fn checked(report: &CheckReport, file: &Path) -> String {
+    let mut text = format!("{}\n", file.display());
+    let yes = |b: bool| if b { "yes" } else { "no" };
+    let mut row = |name: &str, value: String| {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "  {name:24}{value}");
+    };
+    row("vertices", report.vertices.to_string());
+    row("triangles", report.triangles.to_string());
+    row("components", report.components.to_string());
+    row(
+        "watertight",
+        format!(
+            "{} ({} open edges)",
+            yes(report.watertight),
+            report.boundary_edges
+        ),
+    );
+    row(
+        "manifold",
+        format!(
+            "{} ({} edges, {} vertices are not)",
+            yes(report.manifold),
+            report.non_manifold_edges,
+            report.non_manifold_vertices
+        ),
+    );
+    row(
+        "consistent winding",
+        yes(report.consistent_winding).to_owned(),
+    );
+    row(
+        "degenerate triangles",
+        report.degenerate_triangles.to_string(),
+    );
+    row(
+        "volume",
+        format!("{:.2} cm3", report.volume_mm3 / MM3_PER_CM3),
+    );
+    row("area", format!("{:.2} cm2", report.area_mm2 / 100.0));
+    if let Some([low, high]) = report.bounds_mm {
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            row(
+                &format!("{name} (mm)"),
+                format!("{:.2} to {:.2}", low[axis], high[axis]),
+            );
+        }
+    }
+    text
+}
+
+fn verdict(watertight: bool, manifold: bool) -> &'static str {
+    match (watertight, manifold) {
+        (true, true) => "closed and manifold",
+        (true, false) => {
+            "closed; touches itself along edges or at vertices (bonemesh check counts them)"
+        }
+        (false, _) => "open",
+    }
+}

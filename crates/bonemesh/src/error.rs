@@ -1,0 +1,64 @@
+//! The one error of the facade.
+
+use bonemesh_cloud::CloudError;
+use bonemesh_dicom::DicomError;
+use bonemesh_mesh::MeshError;
+use bonemesh_phantom::PhantomError;
+use bonemesh_roi::RoiError;
+use bonemesh_segment::SegmentError;
+use bonemesh_surface::SurfaceError;
+use bonemesh_task::{Cancelled, PoolError};
+use bonemesh_volume::VolumeError;
+
+/// Why a step failed; every message names the file or value and the remedy.
+#[non_exhaustive]
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// Reading the CT folder.
+    #[error(transparent)]
+    Dicom(#[from] DicomError),
+    /// The volume or its crop box.
+    #[error(transparent)]
+    Volume(#[from] VolumeError),
+    /// Threshold or edges.
+    #[error(transparent)]
+    Segment(#[from] SegmentError),
+    /// The point cloud.
+    #[error(transparent)]
+    Cloud(#[from] CloudError),
+    /// The surface.
+    #[error(transparent)]
+    Surface(#[from] SurfaceError),
+    /// The mesh or its file.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The region of interest.
+    #[error(transparent)]
+    Roi(#[from] RoiError),
+    /// The phantom.
+    #[error(transparent)]
+    Phantom(#[from] PhantomError),
+    /// The worker threads.
+    #[error(transparent)]
+    Pool(#[from] PoolError),
+    /// Stopped on request.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl Error {
+    /// Whether the work was stopped on request, in whichever step.
+    pub fn is_cancelled(&self) -> bool {
+        matches!(
+            self,
+            Self::Cancelled(_)
+                | Self::Dicom(DicomError::Cancelled(_))
+                | Self::Segment(SegmentError::Cancelled(_))
+                | Self::Cloud(CloudError::Cancelled(_))
+                | Self::Surface(SurfaceError::Cancelled(_))
+                | Self::Mesh(MeshError::Cancelled(_))
+                | Self::Roi(RoiError::Cancelled(_))
+                | Self::Phantom(PhantomError::Cancelled(_))
+        )
+    }
+}

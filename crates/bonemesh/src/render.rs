@@ -1,0 +1,150 @@
+//! The main line: folder to mesh, one step after the other, each timed.
+
+use std::path::Path;
+use std::time::Instant;
+
+use bonemesh_cloud::{Frame, PointCloud, extract_points, mean_neighbour_distance, sample};
+use bonemesh_dicom::{find_series, read_series};
+use bonemesh_mesh::TriangleMesh;
+use bonemesh_segment::{detect_edges, threshold};
+use bonemesh_surface::alpha_surface;
+use bonemesh_task::{Task, pool};
+use bonemesh_volume::Volume;
+
+use crate::report::{RenderReport, Seconds, check};
+use crate::{Error, Settings};
+
+/// Neighbours (with the point itself) whose mean distance is the published choice of alpha.
+const ALPHA_NEIGHBOURS: usize = 100;
+
+/// A mesh in patient millimetres (LPS) and what is to be said of it.
+#[derive(Clone, Debug)]
+pub struct Rendered {
+    /// The surface of the bone, outward-oriented.
+    pub mesh: TriangleMesh,
+    /// Counts, topology, times, warnings.
+    pub report: RenderReport,
+}
+
+/// Reads the series in `folder` and makes the surface of its bone.
+///
+/// # Errors
+/// Any [`Error`]; nothing is written.
+pub fn render(folder: &Path, settings: &Settings, task: &Task) -> Result<Rendered, Error> {
+    pool(settings.threads)?.install(|| {
+        let clock = Instant::now();
+        let scan = find_series(folder, task)?;
+        let series = scan.choose(settings.series.as_ref())?;
+        let (volume, warnings) = read_series(series, task)?;
+        let read_s = clock.elapsed().as_secs_f64();
+        let mut rendered = volume_to_mesh(&volume, settings, task)?;
+        let report = &mut rendered.report;
+        report.series_uid = Some(series.uid.clone());
+        report.warnings = warnings;
+        report.seconds.read = read_s;
+        report.seconds.total += read_s;
+        Ok(rendered)
+    })
+}
+
+/// Makes the surface of the bone in `volume`.
+///
+/// # Errors
+/// Any [`Error`] but those of reading.
+pub fn render_volume(volume: &Volume, settings: &Settings, task: &Task) -> Result<Rendered, Error> {
+    pool(settings.threads)?.install(|| volume_to_mesh(volume, settings, task))
+}
+
+/// The (sampled) point cloud of the bone's edges in `volume`.
+///
+/// # Errors
+/// Any [`Error`] but those of reading and meshing.
+pub fn point_cloud(
+    volume: &Volume,
+    settings: &Settings,
+    frame: Frame,
+    task: &Task,
+) -> Result<PointCloud, Error> {
+    pool(settings.threads)?
+        .install(|| volume_to_cloud(volume, settings, frame, &mut Seconds::default(), task))
+}
+
+/// Makes the surface of a point cloud.
+///
+/// # Errors
+/// [`Error::Cloud`], [`Error::Surface`].
+pub fn mesh_cloud(cloud: &PointCloud, settings: &Settings, task: &Task) -> Result<Rendered, Error> {
+    pool(settings.threads)?.install(|| cloud_to_mesh(cloud, settings, Seconds::default(), task))
+}
+
+fn volume_to_mesh(volume: &Volume, settings: &Settings, task: &Task) -> Result<Rendered, Error> {
+    let mut seconds = Seconds::default();
+    let cloud = volume_to_cloud(volume, settings, Frame::Patient, &mut seconds, task)?;
+    let mut rendered = cloud_to_mesh(&cloud, settings, seconds, task)?;
+    rendered.report.spacing_mm = Some(volume.geometry().spacing_mm());
+    rendered.report.threshold_hu = Some(settings.threshold.hu());
+    Ok(rendered)
+}
+
+fn volume_to_cloud(
+    volume: &Volume,
+    settings: &Settings,
+    frame: Frame,
+    seconds: &mut Seconds,
+    task: &Task,
+) -> Result<PointCloud, Error> {
+    let mut clock = Instant::now();
+    let cropped = settings
+        .crop
+        .as_ref()
+        .map(|crop| volume.cropped(crop))
+        .transpose()?;
+    let mask = threshold(cropped.as_ref().unwrap_or(volume), settings.threshold, task)?;
+    drop(cropped);
+    let edges = detect_edges(&mask, settings.canny, task)?;
+    drop(mask);
+    seconds.edges = lap(&mut clock);
+    let cloud = extract_points(&edges, frame, task)?;
+    drop(edges);
+    let cloud = match settings.sampling {
+        Some(s) => {
+            let kept = sample(&cloud, s.sampler, s.percent, s.seed, task)?;
+            cloud.subset(&kept)
+        }
+        None => cloud,
+    };
+    seconds.cloud = lap(&mut clock);
+    Ok(cloud)
+}
+
+fn cloud_to_mesh(
+    cloud: &PointCloud,
+    settings: &Settings,
+    mut seconds: Seconds,
+    task: &Task,
+) -> Result<Rendered, Error> {
+    let mut clock = Instant::now();
+    let alpha_mm = match settings.alpha_mm {
+        Some(alpha_mm) => alpha_mm,
+        None => mean_neighbour_distance(cloud, ALPHA_NEIGHBOURS, true, task)?,
+    };
+    seconds.neighbours = lap(&mut clock);
+    let surface = alpha_surface(cloud, alpha_mm, task)?;
+    seconds.tetrahedra = lap(&mut clock);
+    let topology = check(&surface.mesh, task)?;
+    seconds.surface = lap(&mut clock);
+    seconds.total =
+        seconds.edges + seconds.cloud + seconds.neighbours + seconds.tetrahedra + seconds.surface;
+    let report = RenderReport::new(settings, cloud, &surface, alpha_mm, &topology, seconds);
+    Ok(Rendered {
+        mesh: surface.mesh,
+        report,
+    })
+}
+
+/// Seconds since `clock`, which starts anew.
+fn lap(clock: &mut Instant) -> f64 {
+    let seconds = clock.elapsed().as_secs_f64();
+    *clock = Instant::now();
+    seconds
+}

@@ -1,0 +1,231 @@
+//! What is said of a result: plain values with units in their names, ready for JSON.
+
+use bonemesh_cloud::PointCloud;
+use bonemesh_mesh::{Topology, TriangleMesh, check_topology};
+use bonemesh_roi::Region;
+use bonemesh_surface::AlphaSurface;
+use bonemesh_task::Task;
+use serde::Serialize;
+
+use crate::memory::peak_mib;
+use crate::{Error, Settings, VERSION};
+
+/// Wall-clock seconds of each step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Seconds {
+    /// Files to volume.
+    pub read: f64,
+    /// Threshold and Canny.
+    pub edges: f64,
+    /// Edge pixels to points, sampling included.
+    pub cloud: f64,
+    /// Mean distance to the neighbours, which gives alpha.
+    pub neighbours: f64,
+    /// Delaunay tetrahedra, filtered by alpha.
+    pub tetrahedra: f64,
+    /// Their boundary as a mesh, and its check.
+    pub surface: f64,
+    /// Mesh to file.
+    pub write: f64,
+    /// All of them.
+    pub total: f64,
+}
+
+/// What is said of a rendered mesh.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RenderReport {
+    /// Version of this program.
+    pub version: &'static str,
+    /// Name of the surface method.
+    pub method: &'static str,
+    /// Bone is strictly above this; `None` for a mesh made of a cloud.
+    pub threshold_hu: Option<f64>,
+    /// Canny's smoothing, pixels.
+    pub sigma: f64,
+    /// `SeriesInstanceUID`, where the volume came from files.
+    pub series_uid: Option<String>,
+    /// Distance between columns, rows, slices in mm.
+    pub spacing_mm: Option<[f64; 3]>,
+    /// Points that were meshed.
+    pub points: usize,
+    /// Largest circumradius kept.
+    pub alpha_mm: f64,
+    /// Tetrahedra kept.
+    pub tetrahedra: usize,
+    /// Vertices of the mesh.
+    pub vertices: usize,
+    /// Triangles of the mesh.
+    pub triangles: usize,
+    /// No edge with a triangle on one side only.
+    pub watertight: bool,
+    /// Every edge has two triangles and every vertex one fan of them.
+    pub manifold: bool,
+    /// Parts of the mesh that do not touch.
+    pub components: usize,
+    /// Volume inside the mesh, through the centres of the edge pixels.
+    pub volume_mm3: f64,
+    /// Seconds of each step.
+    pub seconds: Seconds,
+    /// Peak memory of this process in MiB, where the system tells.
+    pub peak_mib: Option<f64>,
+    /// What the reader had to say of the series.
+    pub warnings: Vec<String>,
+}
+
+impl RenderReport {
+    pub(crate) fn new(
+        settings: &Settings,
+        cloud: &PointCloud,
+        surface: &AlphaSurface,
+        alpha_mm: f64,
+        check: &CheckReport,
+        seconds: Seconds,
+    ) -> Self {
+        Self {
+            version: VERSION,
+            method: settings.method.name(),
+            threshold_hu: None,
+            sigma: settings.canny.sigma(),
+            series_uid: None,
+            spacing_mm: None,
+            points: cloud.points_mm().len(),
+            alpha_mm,
+            tetrahedra: surface.tetrahedra,
+            vertices: check.vertices,
+            triangles: check.triangles,
+            watertight: check.watertight,
+            manifold: check.manifold,
+            components: check.components,
+            volume_mm3: surface.volume_mm3,
+            seconds,
+            peak_mib: peak_mib(),
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Adds the time that writing the file took.
+    pub fn written(&mut self, seconds: f64) {
+        self.seconds.write = seconds;
+        self.seconds.total += seconds;
+        self.peak_mib = peak_mib();
+    }
+}
+
+/// What is said of a region of interest.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RegionReport {
+    /// Version of this program.
+    pub version: &'static str,
+    /// Name of the method.
+    pub method: &'static str,
+    /// Thickness asked for.
+    pub thickness_mm: f64,
+    /// Distinct selected vertices.
+    pub selected: usize,
+    /// Points found behind the selection.
+    pub kept_points: usize,
+    /// Largest circumradius kept.
+    pub alpha_mm: f64,
+    /// Unit normal along which the selection was projected.
+    pub normal: [f64; 3],
+    /// Vertices of the region.
+    pub vertices: usize,
+    /// Triangles of the region.
+    pub triangles: usize,
+    /// No edge with a triangle on one side only.
+    pub watertight: bool,
+    /// Every edge has two triangles and every vertex one fan of them.
+    pub manifold: bool,
+    /// Parts of the mesh that do not touch.
+    pub components: usize,
+    /// Volume inside the region.
+    pub volume_mm3: f64,
+    /// Seconds that it took.
+    pub seconds: f64,
+}
+
+impl RegionReport {
+    pub(crate) fn new(
+        region: &Region,
+        method: &'static str,
+        thickness_mm: f64,
+        check: &CheckReport,
+        seconds: f64,
+    ) -> Self {
+        Self {
+            version: VERSION,
+            method,
+            thickness_mm,
+            selected: region.selected,
+            kept_points: region.kept_points,
+            alpha_mm: region.alpha_mm,
+            normal: region.normal,
+            vertices: check.vertices,
+            triangles: check.triangles,
+            watertight: check.watertight,
+            manifold: check.manifold,
+            components: check.components,
+            volume_mm3: region.volume_mm3,
+            seconds,
+        }
+    }
+}
+
+/// The topology of a mesh in plain words and numbers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CheckReport {
+    /// Vertices.
+    pub vertices: usize,
+    /// Triangles.
+    pub triangles: usize,
+    /// No edge with a triangle on one side only.
+    pub watertight: bool,
+    /// Every edge has two triangles and every vertex one fan of them.
+    pub manifold: bool,
+    /// Neighbouring triangles agree on which side is out.
+    pub consistent_winding: bool,
+    /// Edges with one triangle.
+    pub boundary_edges: usize,
+    /// Edges with three or more triangles.
+    pub non_manifold_edges: usize,
+    /// Vertices with more than one fan of triangles.
+    pub non_manifold_vertices: usize,
+    /// Triangles without area.
+    pub degenerate_triangles: usize,
+    /// Parts that do not touch.
+    pub components: usize,
+    /// Volume inside, positive when the winding is outward.
+    pub volume_mm3: f64,
+    /// Area.
+    pub area_mm2: f64,
+    /// Smallest and largest corner of the bounding box; `None` for an empty mesh.
+    pub bounds_mm: Option<[[f64; 3]; 2]>,
+}
+
+impl From<Topology> for CheckReport {
+    fn from(t: Topology) -> Self {
+        Self {
+            vertices: t.vertices,
+            triangles: t.triangles,
+            watertight: t.watertight,
+            manifold: t.manifold,
+            consistent_winding: t.inconsistent_edges == 0,
+            boundary_edges: t.boundary_edges,
+            non_manifold_edges: t.non_manifold_edges,
+            non_manifold_vertices: t.non_manifold_vertices,
+            degenerate_triangles: t.degenerate_triangles,
+            components: t.components,
+            volume_mm3: t.volume_mm3,
+            area_mm2: t.area_mm2,
+            bounds_mm: t.bounds_mm,
+        }
+    }
+}
+
+/// Looks at the topology of `mesh`.
+///
+/// # Errors
+/// [`Error::Cancelled`].
+pub fn check(mesh: &TriangleMesh, task: &Task) -> Result<CheckReport, Error> {
+    Ok(check_topology(mesh, task)?.into())
+}

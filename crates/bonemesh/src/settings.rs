@@ -1,0 +1,107 @@
+//! What a user chooses for one rendering.
+
+use std::num::NonZeroUsize;
+use std::str::FromStr;
+
+use bonemesh_cloud::{Percent, Sampler};
+use bonemesh_dicom::SeriesChoice;
+use bonemesh_segment::{CannySettings, HuThreshold};
+use bonemesh_volume::CropBox;
+
+/// How the surface is made.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Method {
+    /// The published method: Delaunay tetrahedra of the edge points, filtered by alpha.
+    #[default]
+    Alpha,
+}
+
+impl Method {
+    /// Every method, in the order in which they are offered.
+    pub const ALL: [Self; 1] = [Self::Alpha];
+
+    /// The name used on the command line, in Python and in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Alpha => "alpha",
+        }
+    }
+}
+
+impl FromStr for Method {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        Self::ALL
+            .into_iter()
+            .find(|m| m.name() == name)
+            .ok_or_else(|| {
+                let names = Self::ALL.map(Self::name).join(", ");
+                format!("there is no method `{name}`; choose one of: {names}")
+            })
+    }
+}
+
+/// Which part of the points is kept, and how they are chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sampling {
+    /// Part of the points to keep.
+    pub percent: Percent,
+    /// How they are chosen.
+    pub sampler: Sampler,
+    /// Seed of the random sampler.
+    pub seed: u64,
+}
+
+/// Everything a user can choose for one rendering.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Bone is strictly above this.
+    pub threshold: HuThreshold,
+    /// Canny's sigma and thresholds.
+    pub canny: CannySettings,
+    /// How the surface is made.
+    pub method: Method,
+    /// Largest circumradius kept, in mm; `None` takes the mean distance to 100 neighbours.
+    pub alpha_mm: Option<f64>,
+    /// Part of the volume to use; `None` uses all of it.
+    pub crop: Option<CropBox>,
+    /// Which series of the folder; `None` takes the only plausible one.
+    pub series: Option<SeriesChoice>,
+    /// Part of the points to use; `None` uses all.
+    pub sampling: Option<Sampling>,
+    /// Worker threads; `None` is one per core. The result does not depend on it.
+    pub threads: Option<NonZeroUsize>,
+}
+
+/// The threshold that the published method used for skulls (Tilotta 2009), in HU.
+const SKULL_HU: f64 = 350.0;
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            threshold: HuThreshold::new(SKULL_HU).expect("350 is finite: anything else is a bug"),
+            canny: CannySettings::default(),
+            method: Method::default(),
+            alpha_mm: None,
+            crop: None,
+            series: None,
+            sampling: None,
+            threads: None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_method_is_found_by_its_name() {
+        for method in Method::ALL {
+            assert_eq!(method.name().parse::<Method>(), Ok(method));
+        }
+        assert!("magic".parse::<Method>().unwrap_err().contains("alpha"));
+    }
+}
