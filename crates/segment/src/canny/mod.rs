@@ -17,6 +17,8 @@ mod hysteresis;
 mod kernel;
 mod plane;
 mod smoothing;
+#[cfg(test)]
+mod tests;
 
 use bonemesh_task::Task;
 use ndarray::parallel::prelude::*;
@@ -74,7 +76,7 @@ impl CannySettings {
     /// replaces 0 so that flat ground is never an edge.
     fn effective_low(&self) -> f64 {
         let single = self.low as f32;
-        f64::from(if single == 0.0 { 1e-14 } else { single })
+        f64::from(if single == 0.0 { 1e-14_f32 } else { single })
     }
 }
 
