@@ -1,1 +1,68 @@
-//! The Python extension module of Bonemesh.
+//! The Python extension module of Bonemesh: a thin skin over the facade crate.
+//!
+//! Promise: no algorithm is here. Each file translates one type or step: arguments are checked and
+//! copied, the work runs with the GIL released (`detach`), results come back as frozen objects
+//! whose arrays are read-only views, errors become exceptions (`errors`), and a panic becomes an
+//! exception too.
+//!
+//! Limits: the module is private; `bonemesh`, the package around it, is what people import. Its
+//! signatures are written down in `python/bonemesh/__init__.pyi`.
+
+mod arrays;
+mod cancel;
+mod check;
+mod cloud;
+mod command;
+mod detach;
+mod edges;
+mod errors;
+mod lattice;
+mod mesh;
+mod options;
+mod phantom;
+mod region;
+mod render;
+mod report;
+mod series;
+mod tetrahedra;
+mod views;
+mod volume;
+
+use pyo3::prelude::*;
+
+/// What the package `bonemesh` is made of.
+#[pymodule(gil_used = true)]
+mod _native {
+    use super::{Bound, PyModule, PyModuleMethods, PyResult};
+
+    #[pymodule_export]
+    use crate::cancel::Cancel;
+    #[pymodule_export]
+    use crate::check::check;
+    #[pymodule_export]
+    use crate::cloud::{mean_neighbour_distance, point_cloud, sample};
+    #[pymodule_export]
+    use crate::command::main;
+    #[pymodule_export]
+    use crate::edges::canny;
+    #[pymodule_export]
+    use crate::mesh::{Mesh, read_mesh};
+    #[pymodule_export]
+    use crate::phantom::{phantom, write_phantom};
+    #[pymodule_export]
+    use crate::region::select_roi;
+    #[pymodule_export]
+    use crate::render::render;
+    #[pymodule_export]
+    use crate::series::{LeftOut, Scan, Series, find_series, read_series, scan};
+    #[pymodule_export]
+    use crate::tetrahedra::{alpha_surface, tetrahedralize};
+    #[pymodule_export]
+    use crate::volume::Volume;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", bonemesh::VERSION)?;
+        crate::errors::add_to(module)
+    }
+}

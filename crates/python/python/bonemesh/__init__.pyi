@@ -1,0 +1,288 @@
+"""From a CT folder to a bone mesh, and from a selection on it to a region of its own."""
+
+import os
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, Literal, SupportsIndex, TypeAlias, final
+
+import numpy as np
+import numpy.typing as npt
+
+__all__ = [
+    "ArgumentError",
+    "BonemeshError",
+    "Cancel",
+    "Cancelled",
+    "DicomError",
+    "LeftOut",
+    "Mesh",
+    "MeshError",
+    "Scan",
+    "Series",
+    "Volume",
+    "__version__",
+    "alpha_surface",
+    "canny",
+    "check",
+    "find_series",
+    "mean_neighbour_distance",
+    "phantom",
+    "point_cloud",
+    "read_mesh",
+    "read_series",
+    "render",
+    "sample",
+    "scan",
+    "select_roi",
+    "tetrahedralize",
+    "write_phantom",
+]
+
+__version__: str
+
+_Path: TypeAlias = str | os.PathLike[str]
+# Called with the name of the stage and the done part of it, 0 to 1.
+_Progress: TypeAlias = Callable[[str, float], object]
+# Columns, rows, slices, each (first, end).
+_Crop: TypeAlias = str | Sequence[tuple[SupportsIndex, SupportsIndex]]
+_Sampler: TypeAlias = Literal["uniform", "random", "thesis-uniform"]
+_Orientation: TypeAlias = Literal[
+    "axial", "reversed", "sagittal", "coronal", "oblique", "tilted", "feet-first"
+]
+
+class BonemeshError(Exception): ...
+class ArgumentError(BonemeshError, ValueError): ...
+class DicomError(BonemeshError): ...
+class MeshError(BonemeshError): ...
+class Cancelled(BonemeshError): ...
+
+@final
+class Cancel:
+    def __new__(cls) -> Cancel: ...
+    def cancel(self) -> None: ...
+    @property
+    def is_cancelled(self) -> bool: ...
+
+@final
+class Series:
+    @property
+    def number(self) -> int: ...
+    @property
+    def uid(self) -> str: ...
+    @property
+    def description(self) -> str: ...
+    @property
+    def modality(self) -> str: ...
+    @property
+    def slices(self) -> int: ...
+    @property
+    def slices_found(self) -> int: ...
+    @property
+    def rows(self) -> int: ...
+    @property
+    def columns(self) -> int: ...
+    @property
+    def spacing_mm(self) -> tuple[float, float, float]: ...
+    @property
+    def orientation(self) -> str: ...
+    @property
+    def transfer_syntax(self) -> str: ...
+    @property
+    def estimated_memory_bytes(self) -> int: ...
+    @property
+    def warnings(self) -> list[str]: ...
+    @property
+    def files(self) -> list[Path]: ...
+
+@final
+class LeftOut:
+    @property
+    def path(self) -> Path: ...
+    @property
+    def reason(self) -> str: ...
+
+@final
+class Scan:
+    @property
+    def series(self) -> list[Series]: ...
+    @property
+    def left_out(self) -> list[LeftOut]: ...
+
+@final
+class Volume:
+    def __new__(
+        cls, hu: npt.ArrayLike, patient_from_voxel: npt.ArrayLike
+    ) -> Volume: ...
+    # [slice, row, column], read-only.
+    @property
+    def hu(self) -> npt.NDArray[np.int16] | npt.NDArray[np.float32]: ...
+    # (4, 4): (column, row, slice, 1) to patient millimetres.
+    @property
+    def patient_from_voxel(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def spacing_mm(self) -> tuple[float, float, float]: ...
+    @property
+    def warnings(self) -> list[str]: ...
+
+@final
+class Mesh:
+    def __new__(cls, vertices: npt.ArrayLike, triangles: npt.ArrayLike) -> Mesh: ...
+    # (N, 3) mm, read-only.
+    @property
+    def vertices(self) -> npt.NDArray[np.float32]: ...
+    # (M, 3), read-only.
+    @property
+    def triangles(self) -> npt.NDArray[np.uint32]: ...
+    @property
+    def report(self) -> dict[str, Any]: ...
+    def save(
+        self,
+        path: _Path,
+        *,
+        progress: _Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> None: ...
+
+def scan(
+    path: _Path,
+    *,
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Scan: ...
+def find_series(
+    path: _Path,
+    *,
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> list[Series]: ...
+def read_series(
+    path: _Path,
+    series: SupportsIndex | str | None = None,
+    *,
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Volume: ...
+def canny(
+    image_or_stack: npt.ArrayLike,
+    *,
+    sigma: float = 1.0,
+    low: float = 0.1,
+    high: float = 0.2,
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> npt.NDArray[np.bool_]: ...
+def point_cloud(
+    volume: Volume,
+    *,
+    threshold_hu: float = 350.0,
+    sigma: float = 1.0,
+    frame: Literal["patient", "image"] = "patient",
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> npt.NDArray[np.float64]: ...
+def mean_neighbour_distance(
+    points: npt.ArrayLike,
+    *,
+    k: SupportsIndex = 100,
+    include_self: bool = True,
+    spacing_mm: Sequence[float] | None = None,
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> float: ...
+def sample(
+    points: npt.ArrayLike,
+    *,
+    percent: float,
+    sampler: _Sampler = "uniform",
+    seed: SupportsIndex = 0,
+    spacing_mm: Sequence[float] | None = None,
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> npt.NDArray[np.uint32]: ...
+def tetrahedralize(
+    points: npt.ArrayLike,
+    *,
+    spacing_mm: Sequence[float] | None = None,
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> npt.NDArray[np.uint32]: ...
+def alpha_surface(
+    points: npt.ArrayLike,
+    alpha_mm: float,
+    *,
+    spacing_mm: Sequence[float] | None = None,
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Mesh: ...
+def render(
+    path_or_volume: _Path | Volume,
+    *,
+    threshold_hu: float = 350.0,
+    method: Literal["alpha"] = "alpha",
+    sigma: float = 1.0,
+    series: SupportsIndex | str | None = None,
+    crop: _Crop | None = None,
+    sample_percent: float | None = None,
+    sampler: _Sampler = "uniform",
+    seed: SupportsIndex = 0,
+    alpha_mm: float | None = None,
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Mesh: ...
+def read_mesh(
+    path: _Path,
+    *,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Mesh: ...
+def select_roi(
+    mesh: Mesh,
+    selected_vertices: npt.ArrayLike,
+    *,
+    thickness_mm: float,
+    method: Literal["thesis"] = "thesis",
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Mesh: ...
+def check(
+    mesh: Mesh,
+    *,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> dict[str, Any]: ...
+def phantom(
+    name: str,
+    *,
+    coarser: float = 1.0,
+    orientation: _Orientation | None = None,
+    psf_px: float | None = None,
+    noise_hu: float | None = None,
+    seed: SupportsIndex | None = None,
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Volume: ...
+def write_phantom(
+    name: str,
+    path: _Path,
+    *,
+    coarser: float = 1.0,
+    orientation: _Orientation | None = None,
+    psf_px: float | None = None,
+    noise_hu: float | None = None,
+    seed: SupportsIndex | None = None,
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> dict[str, Any]: ...

@@ -1,0 +1,8 @@
+"""`python -m bonemesh` is the command `bonemesh`."""
+
+import sys
+
+from bonemesh._native import main
+
+if __name__ == "__main__":
+    sys.exit(main())

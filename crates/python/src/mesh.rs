@@ -1,0 +1,149 @@
+//! A triangle mesh.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use bonemesh::{Error, MeshError, TriangleMesh};
+use ndarray::Array2;
+use numpy::PyArray2;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde::Serialize;
+
+use crate::arrays::{Input, numpy, rows};
+use crate::cancel::Cancel;
+use crate::detach::{Watch, detached};
+use crate::errors;
+use crate::report::{dict, json};
+use crate::views::read_only;
+
+/// A triangle mesh in millimetres; it never changes.
+///
+/// Vertices are single precision, as in mesh files and in Blender, and every step that starts from
+/// a `Mesh` uses exactly these: a mesh, the file it was saved to and what Blender shows are equal.
+#[pyclass(frozen, module = "bonemesh")]
+pub(crate) struct Mesh {
+    parts: Arc<Parts>,
+    /// What is said of the mesh, as one JSON object.
+    report: String,
+}
+
+/// The arrays of a mesh.
+pub(crate) struct Parts {
+    vertices: Array2<f32>,
+    triangles: Array2<u32>,
+}
+
+#[pymethods]
+impl Mesh {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        vertices: &Bound<'_, PyAny>,
+        triangles: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let vertices = Input::new("vertices", vertices)?.vectors()?;
+        let triangles = Input::new("triangles", triangles)?.index_triples()?;
+        let mesh = TriangleMesh::new(vertices, triangles).map_err(Error::from);
+        let mesh = mesh.and_then(|mesh| Self::of(mesh, &NoReport {}));
+        mesh.map_err(|e| errors::raised(py, &e))
+    }
+
+    /// `(N, 3) float32`, mm: a read-only view.
+    #[getter]
+    fn vertices<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        numpy(slf.py())?;
+        Ok(read_only(slf, |mesh| &mesh.parts.vertices))
+    }
+
+    /// `(M, 3) uint32`, counter-clockwise seen from outside: a read-only view.
+    #[getter]
+    fn triangles<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        numpy(slf.py())?;
+        Ok(read_only(slf, |mesh| &mesh.parts.triangles))
+    }
+
+    /// What the step that made the mesh says of it; a new dict each time.
+    #[getter]
+    fn report<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        dict(py, &self.report)
+    }
+
+    /// Write the mesh to a file; its extension (.stl, .ply) names the format.
+    #[pyo3(signature = (path, *, progress=None, cancel=None))]
+    fn save(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        progress: Option<Py<PyAny>>,
+        cancel: Option<&Cancel>,
+    ) -> PyResult<()> {
+        let watch = Watch::new(py, progress, cancel)?;
+        let parts = self.parts();
+        detached(py, watch, move |task| {
+            Ok(bonemesh::write_mesh(&path, &parts.mesh()?, task)?)
+        })
+    }
+
+    fn __repr__(&self) -> String {
+        let (vertices, triangles) = (self.parts.vertices.nrows(), self.parts.triangles.nrows());
+        format!("<bonemesh.Mesh, {vertices} vertices, {triangles} triangles>")
+    }
+}
+
+/// Read a mesh file (.stl, .ply); equal vertices become one, in file order.
+#[pyfunction]
+#[pyo3(signature = (path, *, progress=None, cancel=None))]
+pub(crate) fn read_mesh(
+    py: Python<'_>,
+    path: PathBuf,
+    progress: Option<Py<PyAny>>,
+    cancel: Option<&Cancel>,
+) -> PyResult<Mesh> {
+    let watch = Watch::new(py, progress, cancel)?;
+    detached(py, watch, move |task| {
+        Mesh::of(bonemesh::read_mesh(&path, task)?, &NoReport {})
+    })
+}
+
+/// Nothing is said of a mesh that was not made here.
+#[derive(Serialize)]
+struct NoReport {}
+
+impl Mesh {
+    /// `mesh` in single precision, with its `report`.
+    pub(crate) fn of(mesh: TriangleMesh, report: &impl Serialize) -> Result<Self, Error> {
+        let (vertices_mm, triangles) = mesh.into_parts();
+        let single: Vec<[f32; 3]> = vertices_mm.iter().map(|v| v.map(|c| c as f32)).collect();
+        if let Some(vertex) = single.iter().position(|v| !v.iter().all(|c| c.is_finite())) {
+            let [x, y, z] = vertices_mm[vertex];
+            let value = x.abs().max(y.abs()).max(z.abs());
+            return Err(MeshError::NotFinite { vertex, value }.into());
+        }
+        Ok(Self {
+            parts: Arc::new(Parts {
+                vertices: rows(single),
+                triangles: rows(triangles),
+            }),
+            report: json(report),
+        })
+    }
+
+    /// The arrays, for work that goes on while Python may drop the mesh.
+    pub(crate) fn parts(&self) -> Arc<Parts> {
+        self.parts.clone()
+    }
+}
+
+impl Parts {
+    /// The mesh as the library works with it, the same coordinates in double precision.
+    pub(crate) fn mesh(&self) -> Result<TriangleMesh, Error> {
+        let vertices = self.vertices.as_slice().map(<[f32]>::as_chunks::<3>);
+        let triangles = self.triangles.as_slice().map(<[u32]>::as_chunks::<3>);
+        let (Some((vertices, _)), Some((triangles, _))) = (vertices, triangles) else {
+            unreachable!("the arrays are in C order, so each is one slice: anything else is a bug");
+        };
+        let vertices_mm = vertices.iter().map(|v| v.map(f64::from)).collect();
+        Ok(TriangleMesh::new(vertices_mm, triangles.to_vec())?)
+    }
+}

@@ -1,0 +1,110 @@
+//! From a folder or a volume to the mesh of its bone.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use bonemesh::{Error, Method, Percent, Rendered, Sampler, Sampling, Settings, Task};
+use pyo3::prelude::*;
+
+use crate::cancel::Cancel;
+use crate::detach::{Watch, detached};
+use crate::errors;
+use crate::mesh::Mesh;
+use crate::options::{self, Choice, Crop, Threads};
+use crate::volume::Volume;
+
+/// What is rendered.
+enum Source {
+    Folder(PathBuf),
+    Volume(Arc<bonemesh::Volume>),
+}
+
+/// Make the surface of the bone in a CT folder or volume.
+#[pyfunction]
+#[pyo3(signature = (
+    path_or_volume, *, threshold_hu=350.0, method="alpha", sigma=1.0, series=None, crop=None,
+    sample_percent=None, sampler="uniform", seed=0, alpha_mm=None, threads=None, progress=None,
+    cancel=None
+))]
+#[allow(clippy::too_many_arguments)] // keyword arguments, as Python has them
+pub(crate) fn render(
+    py: Python<'_>,
+    path_or_volume: &Bound<'_, PyAny>,
+    threshold_hu: f64,
+    method: &str,
+    sigma: f64,
+    series: Option<Choice>,
+    crop: Option<Crop>,
+    sample_percent: Option<f64>,
+    sampler: &str,
+    seed: i128,
+    alpha_mm: Option<f64>,
+    threads: Option<Threads>,
+    progress: Option<Py<PyAny>>,
+    cancel: Option<&Cancel>,
+) -> PyResult<Mesh> {
+    let watch = Watch::new(py, progress, cancel)?;
+    let settings = Settings {
+        threshold: options::threshold(py, threshold_hu)?,
+        canny: options::canny(py, sigma, None)?,
+        method: method
+            .parse::<Method>()
+            .map_err(|e| errors::unusable(py, e))?,
+        alpha_mm,
+        crop: crop.map(|c| c.0),
+        series: series.map(|s| s.0),
+        sampling: sampling(py, sample_percent, sampler, seed)?,
+        threads: Threads::count(threads),
+    };
+    let source = source(path_or_volume, &settings)?;
+    detached(py, watch, move |task| {
+        let rendered = source.render(&settings, task)?;
+        Mesh::of(rendered.mesh, &rendered.report)
+    })
+}
+
+impl Source {
+    fn render(&self, settings: &Settings, task: &Task) -> Result<Rendered, Error> {
+        match self {
+            Self::Folder(path) => bonemesh::render(path, settings, task),
+            Self::Volume(volume) => bonemesh::render_volume(volume, settings, task),
+        }
+    }
+}
+
+fn source(value: &Bound<'_, PyAny>, settings: &Settings) -> PyResult<Source> {
+    let py = value.py();
+    if let Ok(volume) = value.cast::<Volume>() {
+        if settings.series.is_some() {
+            let message = "series names a series of a folder; leave it out with a volume";
+            return Err(errors::argument(py, message));
+        }
+        return Ok(Source::Volume(volume.get().shared()));
+    }
+    value.extract::<PathBuf>().map(Source::Folder).map_err(|_| {
+        let kind = value
+            .get_type()
+            .name()
+            .map(|n| n.to_string())
+            .unwrap_or_default();
+        let remedy = "give the path of a CT folder or a bonemesh.Volume";
+        errors::argument(py, &format!("path_or_volume is {kind}; {remedy}"))
+    })
+}
+
+fn sampling(
+    py: Python<'_>,
+    percent: Option<f64>,
+    sampler: &str,
+    seed: i128,
+) -> PyResult<Option<Sampling>> {
+    let sampler: Sampler = sampler.parse().map_err(|e| errors::unusable(py, e))?;
+    let Some(percent) = percent else {
+        return Ok(None);
+    };
+    Ok(Some(Sampling {
+        percent: Percent::new(percent).map_err(|e| errors::unusable(py, e))?,
+        sampler,
+        seed: options::seed(py, seed)?,
+    }))
+}

@@ -1,0 +1,79 @@
+"""What the tests share: phantoms, real CT folders where there are some, the command."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sysconfig
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import bonemesh
+import numpy as np
+import pytest
+
+
+@pytest.fixture(scope="session")
+def volume() -> bonemesh.Volume:
+    """A sphere of bone with a hollow: small, blurred, noisy."""
+    return bonemesh.phantom("sphere-shell", coarser=2.0)
+
+
+@pytest.fixture(scope="session")
+def mesh(volume: bonemesh.Volume) -> bonemesh.Mesh:
+    return bonemesh.render(volume)
+
+
+@pytest.fixture(scope="session")
+def ct_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The same sphere as a DICOM series."""
+    folder = tmp_path_factory.mktemp("ct") / "sphere"
+    written = bonemesh.write_phantom("sphere-shell", folder, coarser=2.0)
+    return Path(written["series"])
+
+
+@pytest.fixture(scope="session")
+def patch(mesh: bonemesh.Mesh) -> np.ndarray:
+    """Vertices of the sphere's outer surface, on its left side, in several slices."""
+    x, y, z = mesh.vertices.T
+    outer = np.hypot(np.hypot(x, y), z) > 33
+    return np.flatnonzero(outer & (x > 24) & (abs(y) < 12) & (abs(z) < 10))
+
+
+@pytest.fixture
+def real_ct() -> Callable[[str], Path]:
+    """Folders of real scans, which do not come with the project."""
+    root = os.environ.get("BONEMESH_CT")
+    if not root:
+        pytest.skip("set BONEMESH_CT to the folder of the CT test data")
+    return lambda name: Path(root) / name
+
+
+@dataclass
+class Answer:
+    """How a command ended."""
+
+    code: int
+    out: str
+    err: str
+
+    @property
+    def json(self) -> dict:
+        return json.loads(self.out)
+
+
+@pytest.fixture(scope="session")
+def command() -> Callable[..., Answer]:
+    """Runs the command that the package installed."""
+    program = Path(sysconfig.get_path("scripts")) / "bonemesh"
+
+    def run(*arguments: object, cwd: Path | None = None) -> Answer:
+        words = [str(program), *map(str, arguments)]
+        done = subprocess.run(
+            words, capture_output=True, text=True, cwd=cwd, timeout=300
+        )
+        return Answer(done.returncode, done.stdout, done.stderr)
+
+    return run
