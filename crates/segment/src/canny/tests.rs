@@ -209,7 +209,7 @@ fn the_published_line_has_576_edge_pixels_as_grey_image() {
 
 #[test]
 fn slices_do_not_see_each_other() {
-    let image = |k: usize, j: usize, i: usize| (j / 5 + i / 7 + k) % 3 == 0;
+    let image = |k: usize, j: usize, i: usize| (j / 5 + i / 7 + k).is_multiple_of(3);
     let stack = mask(Array3::from_shape_fn([4, 40, 50], |(k, j, i)| {
         image(k, j, i)
     }));
