@@ -121,6 +121,3 @@ pub(crate) fn move_into_place(fresh: &Path, dir: &Path) -> Result<(), PhantomErr
     }
     fs::rename(fresh, dir).map_err(|e| PhantomError::write(dir, &e))
 }
-
-#[cfg(test)]
-mod tests;

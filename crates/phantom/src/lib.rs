@@ -1,4 +1,36 @@
-//! Bodies of known shape as CT volumes and DICOM series.
+//! Bodies of known shape, scanned as CT volumes and written as DICOM series.
+//!
+//! Every claim about a mesh needs a body whose surface is known exactly. A [`Phantom`] is either
+//! one of the binary models of Rier's thesis, drawn in pixels, or a [`Body`] that gives the
+//! signed distance of any point to its bone surface. [`scan`] turns it into Hounsfield units
+//! with partial volume, the scanner's blur and seeded noise, on any grid: axial, sagittal,
+//! coronal, oblique, tilted, reversed. [`write_phantom`] adds a DICOM series and a JSON file
+//! with the truth.
+//!
+//! A scan is the same to the last bit for any number of threads.
+//!
+//! Limits: blur acts in the slice only, across slices there is the slice's own thickness; noise
+//! is white, without streaks or beam hardening. Distances of femur and head are lower bounds
+//! near blends and where several parts are near; sign and surface are right everywhere. The
+//! head is drawn by hand to look like one, with adult lengths; it is nobody's.
+//!
+//! ```
+//! use bonemesh_phantom::{Phantom, scan, write_phantom};
+//! use bonemesh_task::Task;
+//!
+//! let phantom: Phantom = "head".parse()?;
+//! let settings = phantom.settings().coarser(8.0);
+//! let volume = scan(phantom, &settings, &Task::default())?;
+//! assert_eq!(volume.geometry().shape(), [18, 40, 40]);
+//!
+//! let dir = tempfile::tempdir()?;
+//! let written = write_phantom(phantom, &dir.path().join("head"), &settings, &Task::default())?;
+//! assert_eq!(written.files.len(), 18);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Source of the models: E. Rier, *Generation and segmentation of 3D models of bone from CT
+//! images based on 3D point clouds*, `MASc` thesis, `McMaster` University.
 
 mod bodies;
 mod body;

@@ -211,6 +211,38 @@ pub(crate) mod build {
     pub(crate) fn cone(a: Vec3, ra: f64, b: Vec3, rb: f64) -> Solid {
         Arc::new(Shape::RoundCone { a, b, ra, rb })
     }
+    /// A smooth line through `points`, `pieces` straight ones from each to the next (Catmull and
+    /// Rom 1974; the ends run out straight).
+    pub(crate) fn curve<const N: usize>(points: &[[f64; N]], pieces: usize) -> Vec<[f64; N]> {
+        let last = points.len() - 1;
+        let at = |i: usize, k: usize| points[(i + k).saturating_sub(1).min(last)];
+        let mut line = Vec::with_capacity(last * pieces + 1);
+        for i in 0..last {
+            let [a, b, c, d] = [at(i, 0), at(i, 1), at(i, 2), at(i, 3)];
+            for step in 0..pieces {
+                let t = step as f64 / pieces as f64;
+                line.push(std::array::from_fn(|n| {
+                    let square = 2.0 * a[n] - 5.0 * b[n] + 4.0 * c[n] - d[n];
+                    let cube = 3.0 * (b[n] - c[n]) + d[n] - a[n];
+                    b[n] + 0.5 * t * (c[n] - a[n] + t * (square + t * cube))
+                }));
+            }
+        }
+        line.push(points[last]);
+        line
+    }
+    /// A smooth rod through points `[x, y, z, radius]`.
+    pub(crate) fn cord(points: &[[f64; 4]]) -> Solid {
+        let line = curve(points, 4);
+        let links = line
+            .windows(2)
+            .map(|w| {
+                let [a, b] = [w[0], w[1]];
+                cone([a[0], a[1], a[2]], a[3], [b[0], b[1], b[2]], b[3])
+            })
+            .collect();
+        union(links)
+    }
     /// Round cones in a row through `(point, radius)`.
     pub(crate) fn chain(points: &[(Vec3, f64)], blend: f64) -> Solid {
         let links = points
@@ -237,8 +269,9 @@ pub(crate) mod build {
     pub(crate) fn plate(corners: [Vec3; 3], radius: f64) -> Solid {
         Arc::new(Shape::Plate { corners, radius })
     }
-    /// A band of plates between two lines with the same number of points.
-    pub(crate) fn band(one: &[Vec3], other: &[Vec3], radius: f64, blend: f64) -> Solid {
+    /// A smooth band between two lines with the same number of points.
+    pub(crate) fn band(one: &[Vec3], other: &[Vec3], radius: f64) -> Solid {
+        let (one, other) = (curve(one, 3), curve(other, 3));
         let plates = one
             .windows(2)
             .zip(other.windows(2))
@@ -249,7 +282,7 @@ pub(crate) mod build {
                 ]
             })
             .collect();
-        blended(blend, plates)
+        union(plates)
     }
     /// Everything on the side of the plane through `point` that `normal` points away from.
     pub(crate) fn below(point: Vec3, normal: Vec3) -> Solid {

@@ -1,7 +1,7 @@
 //! The face above the teeth: orbits, cheeks, nose, upper jaw and their air spaces.
 
 use crate::shape::build::{
-    Solid, ball, band, below, blended, block, both_sides, chain, common, cone, ellipsoid, plate,
+    Solid, ball, band, below, blended, block, both_sides, common, cone, cord, ellipsoid, plate,
     union,
 };
 use crate::vector::Vec3;
@@ -11,108 +11,145 @@ const ORBIT: Vec3 = [33.0, -82.0, -29.0];
 
 /// Bone before the air spaces are taken out.
 pub(super) fn solid() -> Solid {
-    let upper_jaw = ellipsoid([0.0, -60.0, -58.0], [33.0, 27.0, 16.0]);
-    let between_the_eyes = block([0.0, -62.0, -32.0], [15.0, 21.0, 18.0], 6.0);
-    let middle = blended(6.0, vec![upper_jaw, between_the_eyes, upper_ridge()]);
+    let upper_jaw = ellipsoid([0.0, -59.0, -57.0], [36.0, 26.0, 17.0]);
+    let between_the_eyes = block([0.0, -60.0, -32.0], [15.0, 22.0, 18.0], 6.0);
+    let brow = ellipsoid([0.0, -59.0, -2.0], [47.0, 27.0, 15.0]);
+    let middle = blended(
+        6.0,
+        vec![
+            blended(6.0, vec![upper_jaw, between_the_eyes]),
+            upper_ridge(),
+        ],
+    );
+    let sides = both_sides(blended(4.0, vec![cheek(), rim()]));
     blended(
-        4.0,
-        vec![middle, both_sides(cheek()), both_sides(rim()), nose()],
+        5.0,
+        vec![
+            blended(5.0, vec![middle, sides]),
+            blended(6.0, vec![brow, nose()]),
+        ],
     )
 }
 
 /// The bone that holds the upper teeth.
 fn upper_ridge() -> Solid {
-    let line: Vec<Vec3> = (-6..=6)
-        .map(|i| {
-            let angle = f64::from(i) / 6.0 * 1.45;
-            [27.0 * angle.sin(), -43.0 - 44.0 * angle.cos(), -62.0]
-        })
-        .collect();
-    let lower: Vec<Vec3> = line.iter().map(|p| [p[0], p[1], -69.0]).collect();
+    let line = |z: f64, reach: f64| -> Vec<Vec3> {
+        (-4..=4)
+            .map(|i| {
+                let angle = f64::from(i) / 4.0 * 1.45;
+                [
+                    (27.0 + reach) * angle.sin(),
+                    -43.0 - (44.0 + reach) * angle.cos(),
+                    z,
+                ]
+            })
+            .collect()
+    };
     let palate = plate(
         [
-            [0.0, -84.0, -62.0],
-            [24.0, -42.0, -62.0],
-            [-24.0, -42.0, -62.0],
+            [0.0, -84.0, -63.0],
+            [24.0, -40.0, -63.0],
+            [-24.0, -40.0, -63.0],
         ],
         2.0,
     );
-    blended(3.0, vec![band(&line, &lower, 5.2, 0.0), palate])
+    blended(
+        3.0,
+        vec![band(&line(-59.0, -2.5), &line(-69.5, 0.0), 5.4), palate],
+    )
 }
 
 fn cheek() -> Solid {
-    let bone = ellipsoid([45.0, -63.0, -51.0], [10.0, 10.0, 9.0]);
-    let root = cone([40.0, -66.0, -55.0], 8.0, [30.0, -64.0, -62.0], 6.0);
-    let arch = chain(
+    let bone = ellipsoid([45.5, -63.0, -51.0], [9.5, 9.0, 8.5]);
+    let buttress = cone([42.0, -63.0, -55.0], 7.0, [29.0, -60.0, -65.0], 5.5);
+    let front = band(
         &[
-            ([50.0, -60.0, -49.0], 5.5),
-            ([60.0, -44.0, -47.0], 3.6),
-            ([65.0, -26.0, -44.0], 3.0),
-            ([65.5, -10.0, -41.0], 3.0),
-            ([61.0, 6.0, -36.0], 4.5),
+            [14.0, -81.0, -47.0],
+            [27.0, -77.0, -51.0],
+            [40.0, -70.0, -51.0],
         ],
-        2.0,
+        &[
+            [15.0, -82.0, -64.0],
+            [24.0, -73.0, -64.0],
+            [29.0, -62.0, -64.0],
+        ],
+        2.6,
     );
-    let wall = union(vec![
-        plate(
-            [
-                [50.0, -66.0, -40.0],
-                [50.0, -68.0, -18.0],
-                [34.0, -42.0, -26.0],
-            ],
-            2.0,
-        ),
-        plate(
-            [
-                [50.0, -66.0, -40.0],
-                [34.0, -42.0, -26.0],
-                [34.0, -42.0, -40.0],
-            ],
-            2.0,
-        ),
+    let arch = cord(&[
+        [50.0, -61.0, -50.0, 6.0],
+        [59.0, -47.0, -48.0, 4.4],
+        [64.5, -29.0, -45.0, 3.5],
+        [65.5, -12.0, -41.5, 3.4],
+        [61.0, 5.0, -36.0, 5.0],
     ]);
-    blended(4.0, vec![bone, root, arch, wall])
+    let arch_below = cord(&[
+        [50.0, -61.0, -53.0, 5.0],
+        [59.0, -47.0, -51.0, 3.4],
+        [64.0, -29.0, -47.0, 2.9],
+        [65.0, -14.0, -43.0, 2.9],
+    ]);
+    let wall = band(
+        &[
+            [50.0, -65.0, -47.0],
+            [49.0, -67.0, -28.0],
+            [48.0, -66.0, -8.0],
+        ],
+        &[
+            [37.0, -38.0, -45.0],
+            [38.0, -37.0, -28.0],
+            [43.0, -36.0, -8.0],
+        ],
+        2.3,
+    );
+    blended(
+        4.0,
+        vec![
+            blended(4.0, vec![bone, buttress, front]),
+            union(vec![arch, arch_below]),
+            wall,
+        ],
+    )
 }
 
 /// The rim of the orbit, brow included.
 fn rim() -> Solid {
-    let brow = chain(
-        &[
-            ([8.0, -84.0, -12.0], 5.5),
-            ([20.0, -86.5, -8.5], 5.0),
-            ([34.0, -83.0, -6.5], 4.6),
-            ([47.0, -73.0, -11.0], 4.4),
-            ([51.0, -67.0, -20.0], 4.4),
-            ([51.0, -64.0, -32.0], 4.0),
-            ([49.0, -65.0, -44.0], 5.0),
-        ],
-        3.0,
-    );
-    let floor = chain(
-        &[
-            ([49.0, -65.0, -44.0], 5.0),
-            ([38.0, -74.0, -49.0], 4.4),
-            ([25.0, -79.0, -49.5], 4.2),
-            ([15.0, -81.0, -43.0], 4.0),
-            ([11.0, -82.0, -30.0], 4.0),
-        ],
-        3.0,
-    );
-    blended(3.0, vec![brow, floor])
+    let brow = cord(&[
+        [6.0, -84.0, -14.0, 5.0],
+        [18.0, -86.0, -9.0, 5.4],
+        [33.0, -82.5, -6.5, 5.0],
+        [46.0, -73.0, -11.0, 4.6],
+        [51.0, -67.0, -20.0, 4.4],
+        [51.0, -64.0, -32.0, 4.2],
+        [49.0, -65.0, -44.0, 5.0],
+    ]);
+    let floor = cord(&[
+        [49.0, -65.0, -44.0, 5.0],
+        [38.0, -74.0, -49.0, 4.4],
+        [25.0, -79.0, -49.5, 4.2],
+        [15.0, -81.0, -43.0, 4.0],
+        [11.0, -82.0, -30.0, 4.0],
+        [10.0, -83.0, -18.0, 4.5],
+    ]);
+    union(vec![brow, floor])
 }
 
 fn nose() -> Solid {
     let bridge = plate(
         [
-            [1.5, -85.0, -14.0],
-            [1.5, -98.0, -36.0],
-            [8.5, -85.0, -36.0],
+            [1.0, -84.0, -12.0],
+            [1.2, -97.0, -37.0],
+            [8.5, -85.0, -38.0],
         ],
         2.2,
     );
-    let sides = cone([9.0, -84.0, -26.0], 4.0, [16.0, -80.0, -56.0], 5.0);
-    let spine = cone([0.0, -86.0, -62.0], 2.6, [0.0, -92.0, -62.0], 1.2);
-    blended(2.5, vec![both_sides(union(vec![bridge, sides])), spine])
+    let sides = cord(&[
+        [8.0, -84.0, -22.0, 4.0],
+        [11.0, -83.0, -40.0, 3.6],
+        [15.5, -81.5, -54.0, 4.0],
+        [12.0, -84.0, -65.0, 4.0],
+    ]);
+    let spine = cone([0.0, -84.0, -64.0], 3.0, [0.0, -93.0, -63.0], 1.2);
+    blended(3.0, vec![both_sides(union(vec![bridge, sides])), spine])
 }
 
 /// What is taken out of the bone: orbits, nasal cavity, sinuses.
@@ -128,50 +165,36 @@ pub(super) fn air() -> Solid {
 
 fn orbit() -> Solid {
     let [x, y, z] = ORBIT;
-    let upper_outer = cone(
-        [x + 4.0, y - 10.0, z + 1.5],
-        17.0,
-        [19.0, -42.0, -26.0],
-        4.0,
-    );
-    let upper_inner = cone(
-        [x - 3.0, y - 14.0, z + 1.0],
-        16.0,
-        [19.0, -42.0, -26.0],
-        4.0,
-    );
-    let lower = cone(
-        [x + 2.0, y - 10.0, z - 3.0],
-        16.0,
-        [19.0, -42.0, -28.0],
-        4.0,
-    );
-    blended(3.0, vec![upper_outer, upper_inner, lower])
+    let apex: Vec3 = [19.0, -43.0, -27.0];
+    let outer = cone([x + 3.5, y - 8.0, z + 1.0], 17.0, apex, 4.0);
+    let inner = cone([x - 3.0, y - 12.0, z + 1.5], 16.5, apex, 4.0);
+    let lower = cone([x + 1.5, y - 8.0, z - 2.0], 16.5, apex, 4.0);
+    blended(3.0, vec![outer, inner, lower])
 }
 
+/// Pear-shaped in front, two passages behind.
 fn nasal_cavity() -> Solid {
-    let pear = blended(
-        5.0,
-        vec![
-            cone([0.0, -110.0, -40.0], 6.0, [0.0, -60.0, -36.0], 6.0),
-            both_sides(cone([5.5, -110.0, -55.0], 6.5, [7.0, -24.0, -54.0], 7.5)),
-        ],
-    );
+    let pear = union(vec![
+        cone([0.0, -110.0, -41.0], 5.5, [0.0, -60.0, -38.0], 5.5),
+        both_sides(cone([2.8, -110.0, -49.0], 7.0, [4.0, -40.0, -47.0], 7.0)),
+        both_sides(cone([5.0, -110.0, -55.5], 7.0, [6.5, -24.0, -54.0], 7.5)),
+    ]);
     let upper = block([0.0, -58.0, -34.0], [9.5, 16.0, 12.0], 3.0);
     blended(3.0, vec![pear, upper])
 }
 
 fn sinuses() -> Solid {
-    let cheek = both_sides(ellipsoid([25.5, -61.0, -56.0], [9.5, 15.0, 9.0]));
+    let cheek = both_sides(ellipsoid([25.5, -61.0, -55.0], [9.5, 13.5, 8.0]));
     // The frontal sinus is larger on the patient's right.
-    let front = blended(
-        2.0,
-        vec![
-            ellipsoid([-9.0, -80.0, -4.0], [9.0, 3.5, 7.0]),
-            ball([6.0, -81.0, -7.0], 3.5),
-        ],
-    );
-    union(vec![cheek, front])
+    let front = union(vec![
+        ellipsoid([-9.0, -79.0, -4.0], [9.0, 3.2, 6.0]),
+        ellipsoid([6.0, -80.0, -6.0], [4.5, 3.0, 4.0]),
+    ]);
+    let sphenoid = union(vec![
+        ball([5.0, -31.0, -35.0], 6.5),
+        ball([-5.0, -29.0, -34.0], 5.0),
+    ]);
+    union(vec![cheek, front, sphenoid])
 }
 
 /// Thin bone set into the openings: septum, conchae, the plates behind the palate.
@@ -180,31 +203,28 @@ pub(super) fn partitions() -> Solid {
     let septum = union(vec![
         plate(
             [
-                [0.0, -88.0, -36.0],
-                [-2.5, -74.0, -62.0],
+                [0.0, -84.0, -36.0],
+                [-2.5, -76.0, -63.0],
                 [0.0, -30.0, -36.0],
             ],
             0.9,
         ),
         plate(
             [
-                [-2.5, -74.0, -62.0],
-                [0.0, -30.0, -62.0],
+                [-2.5, -76.0, -63.0],
+                [0.0, -30.0, -63.0],
                 [0.0, -30.0, -36.0],
             ],
             0.9,
         ),
     ]);
-    let concha = |z: f64, reach: f64| {
-        chain(
-            &[
-                ([13.5, -78.0, z + 3.0], 1.1),
-                ([reach, -76.0, z], 1.3),
-                ([reach + 1.0, -50.0, z - 1.0], 1.3),
-                ([12.0, -36.0, z + 2.0], 1.1),
-            ],
-            1.0,
-        )
+    let concha = |z: f64, outside: f64, reach: f64| {
+        cord(&[
+            [outside, -76.0, z + 3.5, 1.2],
+            [reach, -74.0, z, 1.4],
+            [reach + 1.0, -50.0, z - 1.0, 1.4],
+            [outside, -38.0, z + 2.5, 1.2],
+        ])
     };
     let pterygoid = plate(
         [
@@ -212,13 +232,13 @@ pub(super) fn partitions() -> Solid {
             [15.0, -28.0, -44.0],
             [15.0, -33.0, -70.0],
         ],
-        1.6,
+        1.8,
     );
     union(vec![
         septum,
         both_sides(union(vec![
-            concha(-54.0, 8.0),
-            concha(-43.0, 7.0),
+            concha(-56.0, 14.0, 8.0),
+            concha(-46.0, 11.5, 7.0),
             pterygoid,
         ])),
     ])

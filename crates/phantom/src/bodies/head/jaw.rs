@@ -1,10 +1,10 @@
-//! The lower jaw, a body of its own: a gap of 3 mm parts it from the skull.
+//! The lower jaw, a body of its own: a gap of at least 4 mm parts it from the skull.
 
-use crate::shape::build::{Solid, band, blended, both_sides, cone};
+use crate::shape::build::{Solid, band, blended, both_sides, cone, cord, union};
 use crate::vector::Vec3;
 
 /// Middle of the left condyle.
-pub(super) const CONDYLE: Vec3 = [50.0, 0.0, -47.0];
+pub(super) const CONDYLE: Vec3 = [52.0, -4.0, -49.0];
 /// Foremost point of the chin, in the midline.
 pub(super) const CHIN: Vec3 = [0.0, -93.0, -117.0];
 
@@ -29,13 +29,8 @@ fn body() -> Solid {
         [40.0, -35.0, -108.0],
         [45.0, -20.0, -102.0],
     ];
-    let base = [0, 1, 2, 3, 4]
-        .map(|i| cone(lower[i], 5.5, lower[i + 1], 5.0))
-        .to_vec();
-    blended(
-        4.0,
-        vec![band(&upper, &lower, 4.6, 0.0), blended(0.0, base)],
-    )
+    let base: Vec<[f64; 4]> = lower.iter().map(|p| [p[0], p[1], p[2], 5.4]).collect();
+    blended(4.0, vec![band(&upper, &lower, 4.6), cord(&base)])
 }
 
 fn ramus() -> Solid {
@@ -50,18 +45,21 @@ fn ramus() -> Solid {
         [48.5, -4.0, -60.0],
     ];
     // The notch between coronoid process and neck stays open.
-    let sheet = band(&front[..2], &back[..2], 3.2, 0.0);
-    let coronoid = cone(front[1], 3.6, front[2], 2.6);
+    let sheet = band(&front[..2], &back[..2], 3.2);
+    let coronoid = cone(front[1], 3.8, front[2], 2.6);
     let root = band(
         &[front[1], [45.0, -28.0, -66.0]],
         &[back[1], [48.0, -9.0, -66.0]],
         2.8,
-        0.0,
     );
-    let neck = cone(back[1], 3.8, [49.5, -1.5, -53.0], 3.6);
-    let head = cone([45.0, 1.0, -47.0], 4.0, [55.0, -1.0, -47.0], 4.0);
-    let angle = cone(back[0], 4.6, back[1], 3.8);
-    blended(3.0, vec![sheet, coronoid, root, neck, head, angle])
+    let neck = cone(back[1], 4.0, [51.0, -4.5, -54.0], 3.6);
+    let head = cone([48.0, -3.0, -49.0], 4.0, [56.0, -5.0, -49.0], 4.0);
+    let angle = cone(back[0], 4.8, back[1], 4.0);
+    let flat = union(vec![sheet, root]);
+    blended(
+        3.0,
+        vec![flat, blended(3.0, vec![coronoid, neck, head]), angle],
+    )
 }
 
 fn chin() -> Solid {

@@ -51,7 +51,7 @@ pub(super) fn shell() -> Solid {
     let mastoid = cone([51.0, 26.0, -36.0], 13.0, [49.0, 21.0, -60.0], 5.5);
     let petrous = cone([48.0, 16.0, -38.0], 10.0, [16.0, -6.0, -36.0], 6.0);
     let occipital_condyle = cone([13.0, 24.0, -50.0], 5.0, [9.0, 14.0, -51.0], 4.0);
-    let styloid = cone([44.0, 12.0, -46.0], 2.6, [36.0, 2.0, -68.0], 1.3);
+    let styloid = cone([43.0, 18.0, -46.0], 2.8, [35.0, 8.0, -70.0], 1.4);
     let clivus = chain(
         &[
             ([0.0, 18.0, -47.0], 5.0),
@@ -73,15 +73,11 @@ pub(super) fn shell() -> Solid {
     )
 }
 
-/// Spinal cord, ear canals, the sinus of the sphenoid.
+/// Spinal cord and ear canals.
 pub(super) fn openings() -> Solid {
     let cord = cone([0.0, 33.0, -36.0], 15.0, [0.0, 35.0, -70.0], 16.5);
     let ear = both_sides(cone([74.0, 8.0, -36.0], 4.5, [46.0, 6.0, -34.0], 3.0));
-    let sphenoid = union(vec![
-        ball([5.0, -31.0, -35.0], 6.5),
-        ball([-5.0, -29.0, -34.0], 5.0),
-    ]);
-    union(vec![cord, ear, sphenoid])
+    union(vec![cord, ear])
 }
 
 /// A drilled hole through the wall, square to it.
