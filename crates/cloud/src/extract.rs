@@ -82,7 +82,7 @@ mod tests {
         let (k, j, i) = edges.dim();
         let geometry = Geometry::new([k, j, i], affine)
             .unwrap()
-            .with_first_slice_location_mm(-4.0);
+            .with_slice_locations_mm(-4.0, 3.0);
         EdgeMap { edges, geometry }
     }
 
