@@ -56,9 +56,9 @@ pub struct RenderReport {
     pub vertices: usize,
     /// Triangles of the mesh.
     pub triangles: usize,
-    /// No edge with a triangle on one side only.
+    /// Closed: every edge has as many triangles running along it one way as the other.
     pub watertight: bool,
-    /// Every edge has two triangles and every vertex one fan of them.
+    /// No edge has more than two triangles, no vertex more than one fan of them.
     pub manifold: bool,
     /// Parts of the mesh that do not touch.
     pub components: usize,
@@ -132,9 +132,9 @@ pub struct RegionReport {
     pub vertices: usize,
     /// Triangles of the region.
     pub triangles: usize,
-    /// No edge with a triangle on one side only.
+    /// Closed: every edge has as many triangles running along it one way as the other.
     pub watertight: bool,
-    /// Every edge has two triangles and every vertex one fan of them.
+    /// No edge has more than two triangles, no vertex more than one fan of them.
     pub manifold: bool,
     /// Parts of the mesh that do not touch.
     pub components: usize,
@@ -178,9 +178,9 @@ pub struct CheckReport {
     pub vertices: usize,
     /// Triangles.
     pub triangles: usize,
-    /// No edge with a triangle on one side only.
+    /// Closed: every edge has as many triangles running along it one way as the other.
     pub watertight: bool,
-    /// Every edge has two triangles and every vertex one fan of them.
+    /// No edge has more than two triangles, no vertex more than one fan of them.
     pub manifold: bool,
     /// Neighbouring triangles agree on which side is out.
     pub consistent_winding: bool,

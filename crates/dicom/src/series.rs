@@ -121,8 +121,13 @@ impl Series {
         let affine = affine(&self.stack, &self.grid, begin);
         let geometry = Geometry::new([count, self.rows, self.columns], affine)?;
         Ok(match locations(&self.stack) {
-            Some(first) => geometry
-                .with_first_slice_location_mm(first + self.grid.at(begin) - self.stack[0].along_mm),
+            Some(locations) => {
+                let from_first_mm = self.grid.at(begin) - self.stack[0].along_mm;
+                geometry.with_slice_locations_mm(
+                    locations.first_mm + from_first_mm * locations.per_mm,
+                    self.grid.step_mm * locations.per_mm,
+                )
+            }
             None => geometry,
         })
     }
@@ -161,16 +166,27 @@ fn affine(slices: &[Slice], grid: &Grid, begin: usize) -> Affine {
     Affine::from_axes(scaled(x, dx), scaled(y, dy), axis, origin)
 }
 
-/// The first slice's location, if the locations run as the positions do.
-fn locations(slices: &[Slice]) -> Option<f64> {
-    let first = slices.first()?;
-    let start = first.place().slice_location?;
+/// Slice locations that run evenly along the normal, upwards or downwards.
+struct Locations {
+    /// Location of the first slice.
+    first_mm: f64,
+    /// Location gained for each mm along the normal: 1 or -1, other values where the scanner
+    /// counts along a tilted bed.
+    per_mm: f64,
+}
+
+/// The slice locations, if all slices have one and they run evenly with the positions.
+fn locations(slices: &[Slice]) -> Option<Locations> {
+    let (first, last) = (slices.first()?, slices.last()?);
+    let first_mm = first.place().slice_location?;
+    let per_mm = (last.place().slice_location? - first_mm) / (last.along_mm - first.along_mm);
     let agrees = |s: &Slice| {
-        let location = s.place().slice_location?;
-        let difference = (location - start) - (s.along_mm - first.along_mm);
-        (difference.abs() <= LOCATION_MM).then_some(())
+        let expected = first_mm + (s.along_mm - first.along_mm) * per_mm;
+        let off = s.place().slice_location? - expected;
+        (off.abs() <= LOCATION_MM).then_some(())
     };
-    slices.iter().try_for_each(agrees).map(|()| start)
+    let even = slices.iter().try_for_each(agrees);
+    even.map(|()| Locations { first_mm, per_mm })
 }
 
 fn syntaxes(slices: &[Slice]) -> String {

@@ -84,20 +84,25 @@ fn an_oblique_tilted_stack_keeps_its_shear() {
 }
 
 #[test]
-fn slice_locations_place_the_image_frame_when_they_agree() {
+fn slice_locations_place_the_image_frame_when_they_are_even() {
     let location = |offset: f64, sign: f64| {
         folder(3, move |k, image| {
             let text = (offset + sign * 2.0 * k as f64).to_string();
             image.text(tags::SLICE_LOCATION, VR::DS, &text)
         })
     };
-    let z = |folder: &tempfile::TempDir| {
+    let place = |folder: &tempfile::TempDir, k: f64| {
         let (volume, _) = read(folder.path());
-        volume.geometry().image_from_voxel().apply([0.0; 3])
+        volume.geometry().image_from_voxel().apply([0.0, 0.0, k])
     };
-    assert_eq!(z(&location(-70.25, 1.0)), [-0.25, -0.375, -70.25]);
-    // Locations that run the other way do not belong to this frame: positions are used.
-    assert_eq!(z(&location(-70.25, -1.0)), [-0.25, -0.375, 0.0]);
+    assert_eq!(place(&location(-70.25, 1.0), 1.0), [-0.25, -0.375, -68.25]);
+    // Locations may run against the order of the slices, as the published frame takes them.
+    assert_eq!(place(&location(-70.25, -1.0), 1.0), [-0.25, -0.375, -72.25]);
+    // Uneven ones say nothing: positions are used.
+    let uneven = folder(3, |k, image| {
+        image.text(tags::SLICE_LOCATION, VR::DS, ["0", "1", "9"][k])
+    });
+    assert_eq!(place(&uneven, 1.0), [-0.25, -0.375, 2.0]);
 }
 
 #[test]

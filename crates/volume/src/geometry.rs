@@ -7,7 +7,15 @@ use crate::{Affine, CropBox, VolumeError};
 pub struct Geometry {
     shape: [usize; 3],
     patient_from_voxel: Affine,
-    first_slice_location_mm: f64,
+    slice_locations_mm: SliceLocations,
+}
+
+/// Slice locations as the scanner counts them: the first slice's, and the step to the next, which
+/// is negative where the scanner counts against the order of the slices.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct SliceLocations {
+    first: f64,
+    step: f64,
 }
 
 /// Longest side of a grid: DICOM's rows and columns are 16-bit, lattice arithmetic relies on it.
@@ -16,8 +24,8 @@ const MAX_SIDE: usize = 65_535;
 impl Geometry {
     /// A grid whose voxel `(column, row, slice)` has its centre at `patient_from_voxel` (mm, LPS).
     ///
-    /// The slice location of the first slice is its distance from the patient origin along the
-    /// slice normal, see [`Geometry::with_first_slice_location_mm`].
+    /// A slice's location is its distance from the patient origin along the slice normal, unless
+    /// [`Geometry::with_slice_locations_mm`] says otherwise.
     ///
     /// # Errors
     /// [`VolumeError::Size`] and [`VolumeError::Degenerate`].
@@ -37,17 +45,26 @@ impl Geometry {
         let mut geometry = Self {
             shape,
             patient_from_voxel,
-            first_slice_location_mm: 0.0,
+            slice_locations_mm: SliceLocations {
+                first: 0.0,
+                step: 0.0,
+            },
         };
         let (normal, origin) = (geometry.slice_normal(), patient_from_voxel.origin());
-        geometry.first_slice_location_mm = (0..3).map(|i| normal[i] * origin[i]).sum();
+        geometry.slice_locations_mm = SliceLocations {
+            first: (0..3).map(|i| normal[i] * origin[i]).sum(),
+            step: geometry.spacing_mm()[2],
+        };
         Ok(geometry)
     }
 
-    /// The same grid with the first slice's location (mm) as the scanner wrote it.
+    /// The same grid with the slice locations (mm) as the scanner wrote them: the first slice's
+    /// and the step to the next; a step that is not finite or 0 is no location and changes nothing.
     #[must_use]
-    pub fn with_first_slice_location_mm(mut self, location_mm: f64) -> Self {
-        self.first_slice_location_mm = location_mm;
+    pub fn with_slice_locations_mm(mut self, first: f64, step: f64) -> Self {
+        if first.is_finite() && step.is_finite() && step != 0.0 {
+            self.slice_locations_mm = SliceLocations { first, step };
+        }
         self
     }
 
@@ -88,12 +105,13 @@ impl Geometry {
     /// `z` = slice location; mm. Rows and columns are taken as orthogonal and tilt is left out:
     /// this is the frame of the published method, kept for comparison with it.
     pub fn image_from_voxel(&self) -> Affine {
-        let [dx, dy, dz] = self.spacing_mm();
+        let [dx, dy, _] = self.spacing_mm();
+        let SliceLocations { first, step } = self.slice_locations_mm;
         Affine::from_axes(
             [dx, 0.0, 0.0],
             [0.0, dy, 0.0],
-            [0.0, 0.0, dz],
-            [-dx / 2.0, -dy / 2.0, self.first_slice_location_mm],
+            [0.0, 0.0, step],
+            [-dx / 2.0, -dy / 2.0, first],
         )
     }
 
@@ -111,7 +129,10 @@ impl Geometry {
         Ok(Self {
             shape: [crop.slices.len(), crop.rows.len(), crop.columns.len()],
             patient_from_voxel: self.patient_from_voxel.shifted(start),
-            first_slice_location_mm: self.first_slice_location_mm + start[2] * self.spacing_mm()[2],
+            slice_locations_mm: SliceLocations {
+                first: self.slice_locations_mm.first + start[2] * self.slice_locations_mm.step,
+                ..self.slice_locations_mm
+            },
         })
     }
 }
@@ -146,6 +167,17 @@ mod tests {
             geometry.image_from_voxel().apply([0.0, 0.0, 1.0]),
             [-0.2, -0.25, -1.0]
         );
+    }
+
+    #[test]
+    fn locations_may_fall_where_slices_rise() {
+        let affine = Affine::from_axes([0.4, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 2.0], [0.0; 3]);
+        let geometry = Geometry::new([4, 4, 4], affine)
+            .unwrap()
+            .with_slice_locations_mm(10.0, -2.0);
+        assert_eq!(geometry.image_from_voxel().apply([0.0, 0.0, 1.0])[2], 8.0);
+        let part = geometry.cropped(&"0:4,0:4,2:4".parse().unwrap()).unwrap();
+        assert_eq!(part.image_from_voxel().apply([0.0; 3])[2], 6.0);
     }
 
     #[test]
