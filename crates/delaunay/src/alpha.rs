@@ -100,7 +100,11 @@ pub(crate) fn small_sphere<K: Kernel>(
 
 /// Sorts cells of ranks and names the input's points.
 fn numbered<K: Kernel>(mut cells: Vec<[u32; 4]>, sites: &Sites<K>) -> Tetrahedra {
-    cells.par_sort_unstable();
+    // As one long number a cell compares in the same order, but quicker.
+    cells.par_sort_unstable_by_key(|&[a, b, c, d]| {
+        let pair = |high: u32, low: u32| u64::from(high) << 32 | u64::from(low);
+        u128::from(pair(a, b)) << 64 | u128::from(pair(c, d))
+    });
     cells
         .par_iter_mut()
         .for_each(|cell| *cell = cell.map(|rank| sites.input[rank as usize]));

@@ -29,7 +29,7 @@ impl<K: Kernel> Triangulation<'_, K> {
                 if self.kernel.orientation(replaced) < 0.0 {
                     let across = cell.neighbours[f];
                     here = across >> 2;
-                    if self.cells[here as usize].ghost().is_some() {
+                    if self.cells[here as usize].is_infinite() {
                         return here;
                     }
                     entered = (across & 3) as usize;

@@ -33,10 +33,22 @@ pub(crate) struct Cell {
 }
 
 impl Cell {
+    /// Whether the ghost is among the vertices.
+    #[inline]
+    pub(crate) fn is_infinite(&self) -> bool {
+        let [a, b, c, d] = self.vertices;
+        // The ghost is 0, and a minimum has no branch: this is asked of every cell looked at.
+        a.min(b).min(c.min(d)) == GHOST
+    }
+
     /// The place of the ghost among the vertices, if the cell is infinite.
     #[inline]
     pub(crate) fn ghost(&self) -> Option<usize> {
-        self.vertices.iter().position(|&v| v == GHOST)
+        if self.is_infinite() {
+            self.vertices.iter().position(|&v| v == GHOST)
+        } else {
+            None
+        }
     }
 }
 
@@ -213,7 +225,7 @@ impl<'k, K: Kernel> Triangulation<'k, K> {
     pub(crate) fn finite_cells(&self) -> impl Iterator<Item = [Site<K::Scalar>; 4]> {
         self.cells
             .iter()
-            .filter(|c| c.vertices[0] != UNUSED && c.ghost().is_none())
+            .filter(|c| c.vertices[0] != UNUSED && !c.is_infinite())
             .map(|c| c.vertices.map(|v| self.sites[v as usize]))
     }
 }

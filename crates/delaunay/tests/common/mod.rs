@@ -1,5 +1,8 @@
 //! An oracle that shares nothing with the crate: plain i128 determinants, all points at once.
 
+// Each test file is a crate of its own and uses a part of this.
+#![allow(dead_code)]
+
 use bonemesh_delaunay::{DelaunayError, Points, Tetrahedra, tetrahedralize};
 use bonemesh_task::Task;
 use proptest::prelude::*;
@@ -110,6 +113,14 @@ impl Oracle<'_> {
     pub(crate) fn tetrahedra(&self) -> Result<Tetrahedra, DelaunayError> {
         tetrahedralize(self.lattice(), &Task::default())
     }
+}
+
+/// Pixels of 1 x 1, slices of 3.
+pub(crate) const SLICES: [[i64; 3]; 3] = [[1, 0, 0], [0, 1, 0], [0, 0, 9]];
+
+/// Lattice points as free ones.
+pub(crate) fn as_f64(points: &[[i32; 3]]) -> Vec<[f64; 3]> {
+    points.iter().map(|p| p.map(f64::from)).collect()
 }
 
 fn sub(a: [i128; 3], b: [i128; 3]) -> [i128; 3] {
