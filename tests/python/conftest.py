@@ -72,7 +72,7 @@ def command() -> Callable[..., Answer]:
     def run(*arguments: object, cwd: Path | None = None) -> Answer:
         words = [str(program), *map(str, arguments)]
         done = subprocess.run(
-            words, capture_output=True, text=True, cwd=cwd, timeout=300
+            words, check=False, capture_output=True, text=True, cwd=cwd, timeout=300
         )
         return Answer(done.returncode, done.stdout, done.stderr)
 

@@ -3,6 +3,7 @@
 import _thread
 import threading
 import time
+from itertools import pairwise
 
 import bonemesh
 import numpy as np
@@ -55,9 +56,7 @@ def test_progress_comes_on_the_calling_thread_and_rises(volume):
     for _, stage, fraction in calls:
         assert isinstance(stage, str) and stage
         assert isinstance(fraction, float) and 0 <= fraction <= 1
-    for (_, stage, fraction), (_, next_stage, next_fraction) in zip(
-        calls, calls[1:], strict=False
-    ):
+    for (_, stage, fraction), (_, next_stage, next_fraction) in pairwise(calls):
         assert stage != next_stage or fraction <= next_fraction
     after = len(calls)
     time.sleep(0.2)

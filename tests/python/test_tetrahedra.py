@@ -35,7 +35,7 @@ def in_general_position() -> dict[str, np.ndarray]:
         "a ball": ball,
         "a shell": thick_shell,
         "a flat box": random.random((1500, 3)) * [1000, 1, 30],
-        "far from the origin": random.random((500, 3)) + 1e4,
+        "away from the origin": random.random((500, 3)) * 90 + 300,
         "few": random.random((4, 3)),
         "five": random.random((5, 3)),
     }

@@ -7,9 +7,10 @@
 //! - Everything else, our own bugs included: `BonemeshError`, the base of all but `OSError`.
 
 use bonemesh::{DicomError, Error, MeshError, SegmentError, SurfaceError};
+use bonemesh_phantom::PhantomError;
 use pyo3::exceptions::{
-    PyException, PyFileNotFoundError, PyIsADirectoryError, PyNotADirectoryError, PyOSError,
-    PyPermissionError, PyValueError,
+    PyException, PyFileExistsError, PyFileNotFoundError, PyIsADirectoryError, PyNotADirectoryError,
+    PyOSError, PyPermissionError, PyValueError,
 };
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -169,6 +170,7 @@ enum FileTrouble {
     Missing,
     IsFolder,
     NoFolder,
+    InUse,
     Forbidden,
     DiskFull,
     Other,
@@ -179,11 +181,14 @@ impl FileTrouble {
         Some(match error {
             Error::Dicom(DicomError::NotFound(_))
             | Error::Mesh(MeshError::NotFound { .. } | MeshError::NoFolder { .. }) => Self::Missing,
-            Error::Dicom(DicomError::NotAFolder(_)) => Self::NoFolder,
+            Error::Dicom(DicomError::NotAFolder(_))
+            | Error::Phantom(PhantomError::NotAFolder(_)) => Self::NoFolder,
+            Error::Phantom(PhantomError::FolderInUse(_)) => Self::InUse,
             Error::Mesh(MeshError::IsFolder { .. }) => Self::IsFolder,
             Error::Mesh(MeshError::ReadOnly { .. }) => Self::Forbidden,
             Error::Mesh(MeshError::DiskFull { .. }) => Self::DiskFull,
             Error::Dicom(DicomError::Folder { .. })
+            | Error::Phantom(PhantomError::Write { .. })
             | Error::Mesh(MeshError::Unreadable { .. } | MeshError::Unwritable { .. }) => {
                 Self::Other
             }
@@ -199,6 +204,7 @@ impl FileTrouble {
         let (number, exception) = match self {
             Self::Missing => ("ENOENT", PyFileNotFoundError::new_err(message)),
             Self::IsFolder => ("EISDIR", PyIsADirectoryError::new_err(message)),
+            Self::InUse => ("EEXIST", PyFileExistsError::new_err(message)),
             Self::NoFolder => ("ENOTDIR", PyNotADirectoryError::new_err(message)),
             Self::Forbidden => ("EACCES", PyPermissionError::new_err(message)),
             Self::DiskFull => ("ENOSPC", PyOSError::new_err(message)),

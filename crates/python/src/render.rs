@@ -99,12 +99,14 @@ fn sampling(
     seed: i128,
 ) -> PyResult<Option<Sampling>> {
     let sampler: Sampler = sampler.parse().map_err(|e| errors::unusable(py, e))?;
+    let seed = options::seed(py, seed)?;
     let Some(percent) = percent else {
         return Ok(None);
     };
+    let percent = Percent::new(percent).map_err(|e| errors::unusable(py, e))?;
     Ok(Some(Sampling {
-        percent: Percent::new(percent).map_err(|e| errors::unusable(py, e))?,
+        percent,
         sampler,
-        seed: options::seed(py, seed)?,
+        seed,
     }))
 }

@@ -25,6 +25,7 @@ __all__ = [
     "canny",
     "check",
     "find_series",
+    "main",
     "mean_neighbour_distance",
     "phantom",
     "point_cloud",
@@ -286,3 +287,6 @@ def write_phantom(
     progress: _Progress | None = None,
     cancel: Cancel | None = None,
 ) -> dict[str, Any]: ...
+
+# The command `bonemesh` with the words of `sys.argv`; gives its exit code.
+def main() -> int: ...

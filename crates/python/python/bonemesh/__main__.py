@@ -2,7 +2,7 @@
 
 import sys
 
-from bonemesh._native import main
+from bonemesh import main
 
 if __name__ == "__main__":
     sys.exit(main())

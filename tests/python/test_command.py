@@ -1,0 +1,495 @@
+"""The command `bonemesh`: its answers, its exit codes, and what it leaves on the disk."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import bonemesh
+import numpy as np
+import pytest
+
+DONE, FAILED, USAGE = 0, 1, 2
+
+TIMES = {"seconds", "peak_mib"}
+
+
+def untimed(report: dict) -> dict:
+    return {key: value for key, value in report.items() if key not in TIMES}
+
+
+def is_one_line(text: str) -> bool:
+    return text.endswith("\n") and text.count("\n") == 1
+
+
+def fails(answer, *says: str) -> None:
+    """A failure: exit code 1, one line on stderr, nothing on stdout."""
+    assert answer.code == FAILED, answer
+    assert answer.out == ""
+    assert is_one_line(answer.err) and answer.err.startswith("bonemesh: "), answer.err
+    for words in says:
+        assert words in answer.err
+
+
+@pytest.fixture(scope="module")
+def stl(command, ct_folder, tmp_path_factory) -> Path:
+    file = tmp_path_factory.mktemp("command") / "sphere.stl"
+    assert command("render", ct_folder, "-o", file).code == DONE
+    return file
+
+
+@pytest.fixture(scope="module")
+def selection(stl) -> Path:
+    """A file with the numbers of vertices on the left side of the sphere."""
+    x, y, z = bonemesh.read_mesh(stl).vertices.T
+    outer = np.hypot(np.hypot(x, y), z) > 33
+    numbers = np.flatnonzero(outer & (x > 24) & (abs(y) < 12) & (abs(z) < 10))
+    file = stl.with_name("selection.txt")
+    file.write_text("".join(f"{n}\n" for n in numbers))
+    return file
+
+
+def test_version_and_help(command):
+    assert command("--version").out == f"bonemesh {bonemesh.__version__}\n"
+    assert "Usage: bonemesh" in command("--help").out
+    as_module = subprocess.run(
+        [sys.executable, "-m", "bonemesh", "--version"],
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    assert as_module.stdout == f"bonemesh {bonemesh.__version__}\n"
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [],
+        ["magic"],
+        ["render"],
+        ["render", "folder"],
+        ["render", "folder", "-o", "x.stl", "--hu", "bone"],
+        ["render", "folder", "-o", "x.stl", "--hu", "nan"],
+        ["render", "folder", "-o", "x.stl", "--sigma", "-1"],
+        ["render", "folder", "-o", "x.stl", "--crop", "all"],
+        ["render", "folder", "-o", "x.stl", "--sample", "0"],
+        ["render", "folder", "-o", "x.stl", "--sample", "101"],
+        ["render", "folder", "-o", "x.stl", "--sampler", "magic", "--sample", "10"],
+        ["render", "folder", "-o", "x.stl", "--method", "magic"],
+        ["render", "folder", "-o", "x.stl", "--alpha", "0"],
+        ["render", "folder", "-o", "x.stl", "--threads", "0"],
+        ["render", "folder", "-o", "x.stl", "--series", "head"],
+        ["roi", "x.stl", "--selection", "s", "--thickness", "0", "-o", "y.stl"],
+        ["roi", "x.stl", "--selection", "s", "--thickness", "-5", "-o", "y.stl"],
+        ["roi", "x.stl", "--selection", "s", "--thickness", "nan", "-o", "y.stl"],
+        ["roi", "x.stl", "--thickness", "5", "-o", "y.stl"],
+        ["phantom", "elephant", "folder"],
+    ],
+)
+def test_unusable_arguments_end_with_2(command, arguments, tmp_path):
+    answer = command(*arguments, cwd=tmp_path)
+    assert answer.code == USAGE
+    assert answer.out == "" and answer.err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_info_tells_what_is_there(command, ct_folder):
+    report = command("info", ct_folder.parent, "--json").json
+    found = bonemesh.scan(ct_folder.parent)
+    assert len(report["series"]) == len(found.series) == 1
+    assert report["series"][0]["uid"] == found.series[0].uid
+    assert report["series"][0]["slices"] == found.series[0].slices == 30
+    assert tuple(report["series"][0]["spacing_mm"]) == found.series[0].spacing_mm
+    assert [Path(f["path"]) for f in report["left_out"]] == [found.left_out[0].path]
+    text = command("info", ct_folder).out
+    assert "30" in text and "88" in text
+
+
+def test_rendering_writes_what_python_writes(command, ct_folder, stl, tmp_path):
+    answer = command("render", ct_folder, "-o", tmp_path / "again.stl", "--json")
+    assert answer.code == DONE
+    mesh = bonemesh.render(ct_folder)
+    mesh.save(tmp_path / "python.stl")
+    written = stl.read_bytes()
+    assert (tmp_path / "again.stl").read_bytes() == written
+    assert (tmp_path / "python.stl").read_bytes() == written
+    said = untimed(answer.json)
+    assert said.pop("output") == str(tmp_path / "again.stl")
+    assert said == untimed(mesh.report)
+    promised = {
+        "points",
+        "alpha_mm",
+        "tetrahedra",
+        "vertices",
+        "triangles",
+        "watertight",
+    }
+    promised |= {"manifold", "components", "volume_mm3", "seconds", "peak_mib"}
+    assert promised <= answer.json.keys()
+    steps = {
+        "read",
+        "edges",
+        "cloud",
+        "neighbours",
+        "tetrahedra",
+        "surface",
+        "write",
+        "total",
+    }
+    assert steps <= answer.json["seconds"].keys()
+
+
+def test_all_settings_mean_the_same_to_both(command, ct_folder, tmp_path):
+    file = tmp_path / "sampled.ply"
+    answer = command(
+        *("render", ct_folder, "-o", file, "--json"),
+        *("--hu", "500", "--sigma", "1.5", "--crop", "0:44,4:84,3:27", "--series", "1"),
+        *("--sample", "60", "--sampler", "random", "--seed", "4", "--alpha", "7.5"),
+    )
+    mesh = bonemesh.render(
+        ct_folder,
+        threshold_hu=500,
+        sigma=1.5,
+        crop=[(0, 44), (4, 84), (3, 27)],
+        series=bonemesh.find_series(ct_folder)[0].uid,
+        sample_percent=60,
+        sampler="random",
+        seed=4,
+        alpha_mm=7.5,
+    )
+    mesh.save(tmp_path / "python.ply")
+    assert file.read_bytes() == (tmp_path / "python.ply").read_bytes()
+    assert untimed(answer.json)["points"] == mesh.report["points"]
+
+
+def test_clouds_and_their_meshes(command, ct_folder, tmp_path):
+    volume = bonemesh.read_series(ct_folder)
+    for frame in ("patient", "image"):
+        file = tmp_path / f"{frame}.npy"
+        answer = command("cloud", ct_folder, "-o", file, "--frame", frame, "--json")
+        points = bonemesh.point_cloud(volume, frame=frame)
+        assert answer.json["points"] == len(points)
+        assert (np.load(file) == points).all()
+    answer = command(
+        "mesh", tmp_path / "patient.npy", "-o", tmp_path / "mesh.stl", "--json"
+    )
+    assert answer.code == DONE
+    alpha = bonemesh.mean_neighbour_distance(np.load(tmp_path / "patient.npy"))
+    assert answer.json["alpha_mm"] == alpha
+    bonemesh.alpha_surface(
+        points=np.load(tmp_path / "patient.npy"), alpha_mm=alpha
+    ).save(tmp_path / "python.stl")
+    assert (tmp_path / "mesh.stl").read_bytes() == (
+        tmp_path / "python.stl"
+    ).read_bytes()
+
+
+def test_regions_are_the_same_to_both(command, stl, selection, tmp_path):
+    file = tmp_path / "region.stl"
+    answer = command(
+        *(
+            "roi",
+            stl,
+            "--selection",
+            selection,
+            "--thickness",
+            "8",
+            "-o",
+            file,
+            "--json",
+        )
+    )
+    assert answer.code == DONE, answer.err
+    numbers = np.loadtxt(selection, dtype=int)
+    region = bonemesh.select_roi(bonemesh.read_mesh(stl), numbers, thickness_mm=8)
+    region.save(tmp_path / "python.stl")
+    assert file.read_bytes() == (tmp_path / "python.stl").read_bytes()
+    said = untimed(answer.json)
+    said.pop("output")
+    assert said == untimed(region.report)
+    assert region.report["selected"] == len(numbers)
+    assert region.report["volume_mm3"] > 0
+
+
+def test_checks_are_the_same_to_both(command, stl):
+    answer = command("check", stl, "--json")
+    assert answer.json == bonemesh.check(bonemesh.read_mesh(stl))
+    assert answer.json["watertight"] is True
+    assert "watertight" in command("check", stl).out
+
+
+def test_phantoms(command, tmp_path):
+    answer = command("phantom", "tube", tmp_path / "tube", "--coarser", "3", "--json")
+    assert answer.code == DONE, answer.err
+    volume = bonemesh.read_series(answer.json["series"])
+    assert (volume.hu == bonemesh.phantom("tube", coarser=3).hu).all()
+    assert (tmp_path / "tube" / "truth.json").is_file()
+
+
+def test_progress_and_json_never_mix(command, ct_folder, tmp_path):
+    answer = command("render", ct_folder, "-o", tmp_path / "x.stl", "--json")
+    assert answer.out.count("\n") == 1 and answer.out.startswith("{")
+    assert answer.err == ""
+
+
+# Bad input: one clear line with the remedy, exit code 1, nothing half-written.
+
+
+@pytest.mark.parametrize("what", ["render", "cloud", "info"])
+def test_folders_without_a_scan(command, ct_folder, tmp_path, what):
+    output = {"render": ["-o", "out.stl"], "cloud": ["-o", "out.npy"], "info": []}[what]
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    others = tmp_path / "others"
+    others.mkdir()
+    (others / "notes.txt").write_text("no scan")
+    (others / "empty.dcm").write_bytes(b"")
+    file = next(ct_folder.glob("*.dcm"))
+    before = sorted(tmp_path.iterdir())
+    for folder, *says in [
+        (empty, "no CT series", "choose"),
+        (others, "no CT series", "1 left out", "choose"),
+        (file, "is a file", "folder"),
+        (tmp_path / "missing", "does not exist", "check the path"),
+    ]:
+        fails(command(what, folder, *output, cwd=tmp_path), *says)
+        fails(command(what, folder, *output, "--json", cwd=tmp_path), *says)
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def damaged(ct_folder: Path, folder: Path, damage) -> Path:
+    shutil.copytree(ct_folder, folder)
+    for file in sorted(folder.glob("*.dcm"))[10:12]:
+        damage(file)
+    return folder
+
+
+def cut(file: Path) -> None:
+    file.write_bytes(file.read_bytes()[:-3000])
+
+
+def cut_in_the_header(file: Path) -> None:
+    file.write_bytes(file.read_bytes()[:200])
+
+
+def forbid(file: Path) -> None:
+    file.chmod(0)
+
+
+@pytest.mark.parametrize("damage", [cut, cut_in_the_header, forbid])
+def test_damaged_files_are_named_and_the_rest_still_loads(
+    command, ct_folder, tmp_path, damage
+):
+    if damage is forbid and os.geteuid() == 0:
+        pytest.skip("the superuser may read every file")
+    folder = damaged(ct_folder, tmp_path / "damaged", damage)
+    names = [file.name for file in sorted(folder.glob("*.dcm"))[10:12]]
+    report = command("info", folder, "--json").json
+    left_out = {Path(f["path"]).name: f["reason"] for f in report["left_out"]}
+    assert sorted(left_out) == names
+    assert report["series"][0]["slices_found"] == 28
+    answer = command("render", folder, "-o", tmp_path / "out.stl", "--json")
+    assert answer.code == DONE, answer.err
+    assert answer.json["warnings"], "the missing slices are mentioned"
+
+
+def test_a_series_of_damaged_files_only(command, ct_folder, tmp_path):
+    folder = tmp_path / "damaged"
+    shutil.copytree(ct_folder, folder)
+    for file in folder.glob("*.dcm"):
+        cut_in_the_header(file)
+    fails(command("render", folder, "-o", tmp_path / "out.stl"), "no CT series", "30")
+    assert not (tmp_path / "out.stl").exists()
+
+
+@pytest.mark.parametrize(
+    ("hu", "says"), [("5000", "nothing lies above"), ("-3000", "everything lies above")]
+)
+def test_thresholds_with_nothing_on_one_side(command, ct_folder, tmp_path, hu, says):
+    for what, name in [("render", "out.stl"), ("cloud", "out.npy")]:
+        answer = command(what, ct_folder, "--hu", hu, "-o", tmp_path / name)
+        fails(answer, says, "choose a threshold")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("points", "says"),
+    [
+        (np.random.default_rng(0).random((3, 3)), "4"),
+        (np.zeros((50, 3)), "4"),
+        (np.random.default_rng(0).random((50, 3)) * [1, 1, 0], "plane"),
+        (np.linspace([0, 0, 0], [1.0, 1, 1], 50), "line"),
+        (np.zeros((0, 3)), ""),
+    ],
+)
+def test_clouds_without_volume(command, tmp_path, points, says):
+    np.save(tmp_path / "cloud.npy", points)
+    answer = command(
+        "mesh", tmp_path / "cloud.npy", "-o", tmp_path / "out.stl", "--alpha", 9
+    )
+    fails(answer, says)
+    assert not (tmp_path / "out.stl").exists()
+
+
+def test_files_that_are_no_clouds(command, tmp_path):
+    np.save(tmp_path / "flat.npy", np.zeros(7))
+    (tmp_path / "text.npy").write_text("no array")
+    (tmp_path / "text.xyz").write_text("one two three\n")
+    for name in ["flat.npy", "text.npy", "text.xyz", "missing.npy", "odd.doc"]:
+        answer = command("mesh", tmp_path / name, "-o", tmp_path / "out.stl")
+        fails(answer, name)
+    assert not (tmp_path / "out.stl").exists()
+
+
+def test_files_that_are_no_meshes(command, tmp_path):
+    (tmp_path / "text.stl").write_text("no mesh\n")
+    (tmp_path / "empty.stl").write_bytes(b"")
+    (tmp_path / "cut.stl").write_bytes(
+        bytes(80) + (7).to_bytes(4, "little") + bytes(60)
+    )
+    (tmp_path / "none.stl").write_bytes(bytes(84))
+    (tmp_path / "text.ply").write_text("ply\nno header\n")
+    (tmp_path / "mesh.doc").write_text("")
+    (tmp_path / "folder.stl").mkdir()
+    (tmp_path / "selection.txt").write_text("0\n1\n2\n")
+    names = [file.name for file in tmp_path.iterdir() if file.suffix != ".txt"]
+    for name in [*names, "missing.stl"]:
+        fails(command("check", tmp_path / name), name)
+        answer = command(
+            *("roi", tmp_path / name, "--selection", tmp_path / "selection.txt"),
+            *("--thickness", "5", "-o", tmp_path / "out.stl"),
+        )
+        fails(answer, name)
+    assert not (tmp_path / "out.stl").exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", "no vertex"),
+        ("7\n", "one vertex"),
+        ("1\nx\n", "line 2"),
+        ("1\n-2\n", "line 2"),
+        ("1\n99999999\n", "99999999"),
+        (None, "selection"),
+    ],
+)
+def test_unusable_selections(command, stl, tmp_path, text, says):
+    file = tmp_path / "selection.txt"
+    if text is not None:
+        file.write_text(text)
+    answer = command(
+        *(
+            "roi",
+            stl,
+            "--selection",
+            file,
+            "--thickness",
+            "5",
+            "-o",
+            tmp_path / "out.stl",
+        )
+    )
+    fails(answer, says)
+    assert not (tmp_path / "out.stl").exists()
+
+
+def writers(ct_folder: Path, stl: Path, selection: Path) -> list[tuple[list, str]]:
+    """Every command that writes a file, without its `-o`."""
+    return [
+        (["render", ct_folder], ".stl"),
+        (["render", ct_folder], ".ply"),
+        (["cloud", ct_folder], ".npy"),
+        (["cloud", ct_folder], ".xyz"),
+        (["roi", stl, "--selection", selection, "--thickness", "8"], ".stl"),
+    ]
+
+
+def test_outputs_into_folders_that_are_missing(
+    command, ct_folder, stl, selection, tmp_path
+):
+    for words, suffix in writers(ct_folder, stl, selection):
+        target = tmp_path / "missing" / f"out{suffix}"
+        fails(command(*words, "-o", target), str(target))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_outputs_of_unknown_formats(command, ct_folder, stl, selection, tmp_path):
+    for words, _ in writers(ct_folder, stl, selection):
+        fails(command(*words, "-o", tmp_path / "out.doc"), "out.doc")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """Makes a disk of some bytes, read-only or not; only the superuser can."""
+    mounted = []
+
+    def make(options: str) -> Path:
+        folder = tmp_path / f"disk{len(mounted)}"
+        folder.mkdir()
+        if os.geteuid() != 0 or not shutil.which("mount"):
+            pytest.skip("only the superuser can make a small disk")
+        words = ["mount", "-t", "tmpfs", "-o", options, "tmpfs", str(folder)]
+        done = subprocess.run(words, check=False, capture_output=True, text=True)
+        if done.returncode != 0:
+            pytest.skip(f"a small disk cannot be made here: {done.stderr.strip()}")
+        mounted.append(folder)
+        return folder
+
+    yield make
+    for folder in mounted:
+        subprocess.run(["umount", str(folder)], check=True)
+
+
+def test_outputs_onto_a_full_disk(command, ct_folder, stl, selection, small_disk):
+    disk = small_disk("size=8k")
+    for words, suffix in writers(ct_folder, stl, selection):
+        fails(command(*words, "-o", disk / f"out{suffix}"), f"out{suffix}")
+        assert list(disk.iterdir()) == []
+    fails(command("phantom", "tube", disk / "tube", "--coarser", "4"), "room")
+    assert list(disk.iterdir()) == []
+
+
+def test_outputs_onto_a_read_only_disk(command, ct_folder, stl, selection, small_disk):
+    disk = small_disk("ro")
+    for words, suffix in writers(ct_folder, stl, selection):
+        fails(command(*words, "-o", disk / f"out{suffix}"), f"out{suffix}")
+    fails(command("phantom", "tube", disk / "tube", "--coarser", "4"), str(disk))
+
+
+def test_outputs_into_a_forbidden_folder(command, ct_folder, stl, selection, tmp_path):
+    if os.geteuid() == 0:
+        pytest.skip("the superuser may write into every folder")
+    folder = tmp_path / "forbidden"
+    folder.mkdir(mode=0o500)
+    for words, suffix in writers(ct_folder, stl, selection):
+        fails(command(*words, "-o", folder / f"out{suffix}"), f"out{suffix}")
+
+
+def test_a_failed_run_leaves_the_old_file_alone(command, ct_folder, tmp_path):
+    file = tmp_path / "out.stl"
+    file.write_bytes(b"precious")
+    fails(command("render", ct_folder, "--hu", "5000", "-o", file))
+    assert file.read_bytes() == b"precious"
+    assert list(tmp_path.iterdir()) == [file]
+
+
+def test_a_phantom_does_not_write_over_files(command, tmp_path):
+    (tmp_path / "mine.txt").write_text("precious")
+    fails(command("phantom", "tube", tmp_path, "--coarser", "4"), "choose an empty")
+    assert [file.name for file in tmp_path.iterdir()] == ["mine.txt"]
+
+
+def test_a_closed_pipe_is_no_failure(ct_folder):
+    program = [sys.executable, "-m", "bonemesh", "info", str(ct_folder)]
+    with subprocess.Popen(
+        program, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as run:
+        assert run.stdout and run.stderr
+        run.stdout.close()
+        assert run.stderr.read() == b""
+        assert run.wait(60) == DONE

@@ -1,0 +1,59 @@
+"""What is in the package besides the functions."""
+
+from __future__ import annotations
+
+import inspect
+import subprocess
+import sys
+from importlib import metadata, resources
+
+import bonemesh
+
+
+def test_the_version_is_the_packages():
+    assert bonemesh.__version__ == metadata.version("bonemesh")
+
+
+def test_everything_public_is_exported_and_has_a_docstring():
+    public = {name for name in dir(bonemesh) if not name.startswith("_")}
+    assert public == set(bonemesh.__all__) - {"__version__"}
+    for name in public:
+        thing = getattr(bonemesh, name)
+        assert inspect.getdoc(thing), name
+        assert thing.__module__ == "bonemesh" or inspect.isbuiltin(thing)
+
+
+def test_the_exceptions_form_one_family():
+    for kind in ("ArgumentError", "DicomError", "MeshError", "Cancelled"):
+        assert issubclass(getattr(bonemesh, kind), bonemesh.BonemeshError)
+    assert issubclass(bonemesh.ArgumentError, ValueError)
+    assert not issubclass(bonemesh.BonemeshError, OSError)
+
+
+def test_the_licences_travel_along():
+    licences = resources.files(bonemesh) / "licenses"
+    ours = (licences / "LICENSE-MIT").read_text("utf-8")
+    assert "Permission is hereby granted" in ours
+    assert "Apache License" in (licences / "LICENSE-APACHE").read_text("utf-8")
+    others = (licences / "THIRD_PARTY_LICENSES.txt").read_text("utf-8")
+    for package in ("rayon ", "dicom-object ", "pyo3 ", "numpy ", "kiddo ", "clap "):
+        assert f"\n{package}" in others
+    for notice in (
+        "Redistribution and use in source and binary forms",
+        "Permission is hereby",
+    ):
+        assert notice in others
+    # What only builds or tests Bonemesh stays behind.
+    for package in ("proptest ", "pyo3-build-config ", "criterion "):
+        assert f"\n{package}" not in others
+
+
+def test_it_is_marked_as_typed():
+    package = resources.files(bonemesh)
+    assert (package / "py.typed").is_file() and (package / "__init__.pyi").is_file()
+
+
+def test_importing_it_does_not_import_numpy():
+    """The command starts at once, and a program's own NumPy is taken only when arrays are."""
+    code = "import sys, bonemesh; sys.exit('numpy' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
