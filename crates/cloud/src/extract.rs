@@ -113,11 +113,11 @@ mod tests {
             at(Frame::Patient),
             [map.geometry.patient_from_voxel().apply([3.0, 2.0, 1.0])]
         );
-        let [dx, dy, dz] = map.geometry.spacing_mm();
+        let [dx, dy, _] = map.geometry.spacing_mm();
         let [image] = at(Frame::Image)[..] else {
             unreachable!()
         };
-        let expected = [3.0 * dx - dx / 2.0, 2.0 * dy - dy / 2.0, -4.0 + dz];
+        let expected = [3.0 * dx - dx / 2.0, 2.0 * dy - dy / 2.0, -4.0 + 3.0];
         for (value, expected) in image.into_iter().zip(expected) {
             assert!((value - expected).abs() < 1e-12);
         }

@@ -41,8 +41,9 @@ pub(super) fn keep(
         })
         .collect::<Result<_, Cancelled>>()?;
     let steps = walks.concat();
-    let wanted = (percent.fraction() * steps.len() as f64).max(0.5);
-    // Half a point in advance: the number is rounded to the nearest.
+    // Half a point in advance rounds the number to the nearest; a little more than half is
+    // wanted in any case, so that rounding cannot leave a cloud without points.
+    let wanted = (percent.fraction() * steps.len() as f64).max(0.5 + 1e-6);
     let mut due = 0.5;
     let mut kept = Vec::with_capacity(wanted as usize + 1);
     for (step, weight) in steps.iter().zip(weights(&steps, wanted)) {
@@ -184,9 +185,18 @@ mod tests {
             let kept = keep_sorted(&cloud, percent);
             prop_assert!(kept.windows(2).all(|w| w[0] < w[1]));
             prop_assert!(kept.iter().all(|i| (*i as usize) < cloud.len()));
-            let wanted = percent / 100.0 * cloud.len() as f64;
-            prop_assert!((kept.len() as f64 - wanted.max(1.0)).abs() <= 0.500_001 + f64::from(u8::from(wanted < 1.0)) * 0.5);
+            let wanted = (percent / 100.0 * cloud.len() as f64).max(0.5);
+            prop_assert!((kept.len() as f64 - wanted).abs() <= 0.500_01);
             prop_assert!(!kept.is_empty());
+        }
+    }
+
+    #[test]
+    fn a_tiny_part_of_a_few_points_is_one_point() {
+        for points in 1..200 {
+            let row = (0..points).map(|i| [f64::from(i) * 0.37, 0.0, 0.0]);
+            let cloud = PointCloud::from_points(row.collect()).unwrap();
+            assert_eq!(keep_sorted(&cloud, 0.01).len(), 1);
         }
     }
 
