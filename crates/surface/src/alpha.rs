@@ -177,8 +177,13 @@ mod tests {
             used[v as usize] = true;
         }
         assert!(used.into_iter().all(|u| u));
+        let bits = |p: &[f64; 3]| p.map(f64::to_bits);
         let mut points = cloud.points_mm().iter();
-        assert!(mesh.vertices_mm().iter().all(|v| points.any(|p| p == v)));
+        assert!(
+            mesh.vertices_mm()
+                .iter()
+                .all(|v| points.any(|p| bits(p) == bits(v)))
+        );
     }
 
     #[test]
