@@ -3,15 +3,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import bonemesh
 import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 from numpy.typing import NDArray
 
 from .selection import CENTRE_MM, PATIENT_MM, Source, relative_to
+
+if TYPE_CHECKING:
+    import bonemesh
 
 MM_IN_METRES = 0.001
 # A body is two metres long and is looked at from a few times that; the ratio of far to near stays

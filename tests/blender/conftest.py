@@ -53,7 +53,7 @@ def bonemesh(
 def ct(bonemesh: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A CT series of a phantom."""
     folder = tmp_path_factory.mktemp("ct") / "phantom"
-    bonemesh.phantom("tube", folder)
+    bonemesh.write_phantom("tube", folder, coarser=1.3)
     return folder
 
 

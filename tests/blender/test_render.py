@@ -66,7 +66,7 @@ def test_center_in_world_moves_the_object_and_not_its_file(
 @pytest.mark.parametrize(
     ("fields", "keywords"),
     [
-        ({"crop": "4:90, 4:100, 2:9"}, {"crop": "4:90, 4:100, 2:9"}),
+        ({"crop": "4:60, 8:64, 2:20"}, {"crop": "4:60, 8:64, 2:20"}),
         (
             {"sample_percent": 40.0, "sampler": "uniform"},
             {"sample_percent": 40.0, "sampler": "uniform"},

@@ -13,13 +13,18 @@ def files(out: str) -> list[str]:
     return sorted(p.name for p in Path(out).iterdir())
 
 
-def press(name: str) -> tuple[Any, Any]:
-    """Presses a button; returns the operator and its context."""
-    operator, context = stage.pressed(name), stage.FakeContext()
+def press(name: str, function: str) -> tuple[Any, Any, stage.Gate]:
+    """Presses a button; returns the operator, its context, and the gate at which its work is held."""
+    operator, context, gate = (
+        stage.pressed(name),
+        stage.FakeContext(),
+        stage.Gate(function),
+    )
     assert operator.invoke(context, stage.event("LEFTMOUSE")) == {"RUNNING_MODAL"}, (
         operator.reports
     )
-    return operator, context
+    gate.wait_until_reached()
+    return operator, context, gate
 
 
 def until_end(operator: Any, context: Any) -> list[str]:
@@ -50,7 +55,8 @@ def remains(operator: Any, context: Any, out: str) -> dict[str, Any]:
 
 def finished(out: str) -> dict[str, Any]:
     """Lets a job end; other events pass, a second job is refused."""
-    operator, context = press("render_surface_mesh")
+    operator, context, gate = press("render_surface_mesh", "render")
+    operator.modal(context, stage.event("TIMER"))
     passed = [
         sorted(operator.modal(context, stage.event(kind)))
         for kind in ("MOUSEMOVE", "A", "LEFTMOUSE")
@@ -58,6 +64,7 @@ def finished(out: str) -> dict[str, Any]:
     second = stage.pressed("render_surface_mesh")
     refused = second.invoke(stage.FakeContext(), stage.event("LEFTMOUSE"))
     by_script = stage.message_of(bpy.ops.bonemesh.render_surface_mesh)
+    gate.open()
     end = until_end(operator, context)
     return {
         "passed": passed,
@@ -70,20 +77,20 @@ def finished(out: str) -> dict[str, Any]:
 
 def cancelled(out: str, how: str) -> dict[str, Any]:
     """Stops a job with Esc, with the button, or as Blender does when a file is opened."""
-    operator, context = press("render_surface_mesh")
+    operator, context, gate = press("render_surface_mesh", "render")
     operator.modal(context, stage.event("TIMER"))
-    asked = time.monotonic()
     if how == "escape":
         assert operator.modal(context, stage.event("ESC", "PRESS")) == {"RUNNING_MODAL"}
     elif how == "button":
         assert bpy.ops.bonemesh.cancel() == {"FINISHED"}
-    if how == "blender":
+    else:
         operator.cancel(context)
-        stage.addon_job().stop(30.0)
+    gate.open()
+    if how == "blender":
+        assert stage.addon_job().stop(60.0)
         end = []
     else:
         end = until_end(operator, context)
-    print(f"{how}: stopped after {time.monotonic() - asked:.2f} s")
     return {"end": end, **remains(operator, context, out)}
 
 
@@ -92,7 +99,8 @@ def failed(ct: str, out: str) -> dict[str, Any]:
     empty = Path(out).parent / "nothing"
     empty.mkdir()
     bpy.context.scene.bonemesh.ct_directory = str(empty)
-    operator, context = press("render_surface_mesh")
+    operator, context = stage.pressed("render_surface_mesh"), stage.FakeContext()
+    assert operator.invoke(context, stage.event("LEFTMOUSE")) == {"RUNNING_MODAL"}
     end = until_end(operator, context)
     bpy.context.scene.bonemesh.ct_directory = ct
     return {"end": end, **remains(operator, context, out)}

@@ -1,5 +1,6 @@
 """A job runs on while the user does something else to Blender."""
 
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -8,15 +9,22 @@ import stage
 from background import press, until_end
 
 
-def start_region(ct: str, out: str) -> tuple[Any, Any, Any]:
+def start_region(ct: str, out: str) -> tuple[Any, Any, Any, stage.Gate]:
     """Renders, selects everything, presses Select Region of Interest."""
     stage.fill_panel(ct, out)
     bpy.ops.bonemesh.render_surface_mesh()
     bone = bpy.context.view_layer.objects.active
-    bpy.ops.object.mode_set(mode="EDIT")
-    bpy.ops.mesh.select_all(action="SELECT")
-    bpy.ops.object.mode_set(mode="OBJECT")
-    return bone, *press("select_roi")
+    stage.select_front(bone)
+    return bone, *press("select_roi", "select_roi")
+
+
+def open_soon(gate: stage.Gate) -> None:
+    """Opens the gate when the add-on has cancelled its job and waits for the end of it."""
+    timer = threading.Timer(1.0, gate.open)
+    timer.daemon = (
+        True  # Python waits for other threads before it tells anybody that it ends
+    )
+    timer.start()
 
 
 def main(zip: str, out: str, ct: str, how: str) -> dict[str, Any]:
@@ -24,12 +32,14 @@ def main(zip: str, out: str, ct: str, how: str) -> dict[str, Any]:
     stage.install(zip)
     if how == "quit":
         stage.fill_panel(ct, out)
-        press("render_surface_mesh")
+        *_, gate = press("render_surface_mesh", "render")
+        open_soon(gate)
         return {"running": stage.addon_job().running() is not None}
     if how == "disable":
         stage.fill_panel(ct, out)
-        press("render_surface_mesh")
+        *_, gate = press("render_surface_mesh", "render")
         job, watches = stage.addon_job(), stage.addon_watches()
+        open_soon(gate)
         bpy.ops.preferences.addon_disable(module=stage.MODULE)
         return {
             "running": job.running() is not None,
@@ -37,7 +47,7 @@ def main(zip: str, out: str, ct: str, how: str) -> dict[str, Any]:
             "files": sorted(p.name for p in Path(out).glob("*.stl")),
         }
     bpy.ops.ed.undo_push(message="before")
-    bone, operator, context = start_region(ct, out)
+    bone, operator, context, gate = start_region(ct, out)
     bpy.ops.ed.undo_push(message="after")
     if how == "delete":
         bpy.data.objects.remove(bone)
@@ -45,6 +55,7 @@ def main(zip: str, out: str, ct: str, how: str) -> dict[str, Any]:
         bpy.ops.ed.undo()
     elif how == "edit":
         bpy.ops.object.mode_set(mode="EDIT")
+    gate.open()
     end = until_end(operator, context)
     return {
         "end": end,

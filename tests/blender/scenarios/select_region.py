@@ -4,7 +4,9 @@ import math
 from pathlib import Path
 from typing import Any
 
+import bmesh
 import bpy
+import numpy as np
 import stage
 from mathutils import Euler
 
@@ -28,7 +30,7 @@ def make_gpu_context(folder: Path) -> None:
 
 
 def lasso_middle(placed: Any, x_part: float, y_part: float) -> None:
-    """Looks at the object from the patient's front and draws a lasso around its middle, through to the back."""
+    """Looks at the object from the patient's front and draws a lasso around its middle."""
     window = bpy.context.window_manager.windows[0]
     area = next(a for a in window.screen.areas if a.type == "VIEW_3D")
     region = next(r for r in area.regions if r.type == "WINDOW")
@@ -50,6 +52,15 @@ def lasso_middle(placed: Any, x_part: float, y_part: float) -> None:
         bpy.ops.view3d.select_lasso(path=path, mode="SET")
 
 
+def hide_all_but(placed: Any, patch: Any) -> None:
+    """Hides the rest in Edit Mode: only a window can tell what lies behind what, so a lasso takes all."""
+    mesh = bmesh.from_edit_mesh(placed.data)
+    mesh.verts.ensure_lookup_table()
+    for index in np.flatnonzero(~patch):
+        mesh.verts[index].hide_set(True)
+    bmesh.update_edit_mesh(placed.data)
+
+
 def main(zip: str, out: str, ct: str, fields: dict[str, Any]) -> dict[str, Any]:
     """Says what was selected and what became of it."""
     folder = Path(out)
@@ -58,7 +69,9 @@ def main(zip: str, out: str, ct: str, fields: dict[str, Any]) -> dict[str, Any]:
     bpy.ops.bonemesh.render_surface_mesh()
     bone = bpy.context.view_layer.objects.active
     make_gpu_context(folder)
+    patch = stage.front(bone)
     bpy.ops.object.mode_set(mode="EDIT")
+    hide_all_but(bone, patch)
     lasso_middle(bone, 0.3, 0.2)
     bone.update_from_editmode()
     before = stage.save_mesh(folder / "before.npz", bone)

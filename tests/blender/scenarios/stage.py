@@ -1,5 +1,7 @@
 """What the scenarios share: installing, the panel's fields, looking at objects, a window that is none."""
 
+import threading
+from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -8,6 +10,7 @@ import bpy
 import numpy as np
 
 MODULE = "bl_ext.user_default.bonemesh"
+WALL_MM = 9.0  # a little more than the wall of the phantom tube
 
 
 def install(path: str) -> None:
@@ -24,6 +27,7 @@ def fill_panel(ct: str, out: str, **fields: Any) -> Any:
     properties.mesh_directory = out
     properties.mesh_name = "bone"
     properties.roi_name = "region"
+    properties.cut_thickness = WALL_MM
     for name, value in fields.items():
         setattr(properties, name, value)
     return properties
@@ -104,9 +108,36 @@ class FakeContext:
         return getattr(bpy.context, name)
 
 
+class Gate:
+    """Holds a function of the library at its first sign of progress, until it is opened."""
+
+    def __init__(self, name: str) -> None:
+        self._reached, self._opened = threading.Event(), threading.Event()
+        self._library, self._name = import_module("bonemesh"), name
+        self._real = getattr(self._library, name)
+        setattr(self._library, name, self._held)
+
+    def _held(self, *arguments: Any, progress: Any, **keywords: Any) -> Any:
+        def wait(stage: str, fraction: float) -> None:
+            progress(stage, fraction)
+            self._reached.set()
+            assert self._opened.wait(60.0), "the gate was never opened"
+
+        return self._real(*arguments, progress=wait, **keywords)
+
+    def wait_until_reached(self) -> None:
+        """Returns when the function is held."""
+        assert self._reached.wait(60.0), f"{self._name} showed no progress"
+
+    def open(self) -> None:
+        """Lets the function go on; later calls are not held."""
+        setattr(self._library, self._name, self._real)
+        self._opened.set()
+
+
 def pressed(name: str) -> Any:
     """A stand-in for the operator that a button press makes, with the real one's methods."""
-    operators = __import__(f"{MODULE}.operators", fromlist=["operators"])
+    operators = import_module(f"{MODULE}.operators")
     background = operators.background.BackgroundOperator
     real = getattr(operators, f"BONEMESH_OT_{name}")
 
@@ -130,9 +161,29 @@ def event(kind: str, value: str = "NOTHING") -> Any:
 
 def addon_job() -> Any:
     """The add-on's module of running jobs."""
-    return __import__(f"{MODULE}.job", fromlist=["job"])
+    return import_module(f"{MODULE}.job")
 
 
 def addon_watches() -> list[Any]:
     """The add-on's list of jobs that have a timer."""
-    return __import__(f"{MODULE}.operators.background", fromlist=["background"]).watches
+    return import_module(f"{MODULE}.operators.background").watches
+
+
+def front(placed: Any) -> Any:
+    """Which vertices are on a patch of the tube's outer front; looked at in Object Mode."""
+    mesh = placed.data
+    local = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    mesh.vertices.foreach_get("co", local)
+    x, y, z = local.reshape(-1, 3).T
+    radius = np.hypot(x, y)
+    patch = (radius > 0.85 * radius.max()) & (y < -0.8 * radius) & (abs(z) < 15.0)
+    assert patch.any()
+    return patch
+
+
+def select_front(placed: Any) -> None:
+    """Selects the front patch, in Object Mode."""
+    mesh = placed.data
+    mesh.vertices.foreach_set("select", front(placed))
+    mesh.edges.foreach_set("select", np.zeros(len(mesh.edges), dtype=bool))
+    mesh.polygons.foreach_set("select", np.zeros(len(mesh.polygons), dtype=bool))

@@ -20,10 +20,9 @@ def main(zip: str, out: str, ct: str, edit: bool) -> dict[str, Any]:
     bpy.ops.ed.undo_push(message="begin")
     seen = {}
     bpy.ops.bonemesh.render_surface_mesh("EXEC_DEFAULT", True)
-    bpy.ops.object.mode_set("EXEC_DEFAULT", True, mode="EDIT")
-    bpy.ops.mesh.select_all("EXEC_DEFAULT", True, action="SELECT")
-    if not edit:
-        bpy.ops.object.mode_set("EXEC_DEFAULT", True, mode="OBJECT")
+    stage.select_front(bpy.context.view_layer.objects.active)
+    if edit:
+        bpy.ops.object.mode_set("EXEC_DEFAULT", True, mode="EDIT")
     bpy.ops.bonemesh.select_roi("EXEC_DEFAULT", True)
     seen["done"] = names()
     steps_back = 0
