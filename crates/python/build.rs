@@ -113,7 +113,9 @@ fn shipped_packages(metadata: &Value) -> Result<Vec<&Value>> {
 fn notices(packages: &[&Value]) -> Result<String> {
     let mut text = String::from(
         "Bonemesh's extension module contains the following packages, each under its own licence,\n\
-         and the Rust standard library (MIT OR Apache-2.0, The Rust Project Contributors).\n\n",
+         and the Rust standard library (MIT OR Apache-2.0, The Rust Project Contributors). Where a\n\
+         package offers a choice and brings no text, its authors' terms are the Apache License 2.0,\n\
+         which stands below.\n\n",
     );
     let mut holders: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for package in packages {

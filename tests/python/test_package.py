@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 import subprocess
 import sys
 from importlib import metadata, resources
@@ -46,6 +47,36 @@ def test_the_licences_travel_along():
     # What only builds or tests Bonemesh stays behind.
     for package in ("proptest ", "pyo3-build-config ", "criterion "):
         assert f"\n{package}" not in others
+
+
+# Licences that ask for no more than their notice.
+FREE = {"0BSD", "Apache-2.0", "BSD-2-Clause", "BSD-3-Clause", "CC0-1.0", "IJG", "ISC"}
+FREE |= {"MIT", "Unicode-3.0", "Unlicense", "Zlib"}
+
+
+def is_free(expression: str) -> bool:
+    """Whether an SPDX expression leaves a choice that is free."""
+
+    def word(match: re.Match[str]) -> str:
+        text = match[0]
+        return {"AND": "and", "OR": "or"}.get(text, str(text in FREE))
+
+    # An exception (WITH) only ever permits more.
+    plain = re.sub(r" WITH [\w.-]+", "", expression).replace("/", " OR ")
+    return eval(re.sub(r"[\w.+-]+", word, plain), {})
+
+
+def test_everything_inside_may_be_passed_on():
+    licences = resources.files(bonemesh) / "licenses"
+    text = (licences / "THIRD_PARTY_LICENSES.txt").read_text("utf-8")
+    listed = text.partition("=" * 80)[0]
+    packages = re.findall(
+        r"^(\S+) \d\S+: (.*?)(?: https?://\S+)?$", listed, re.MULTILINE
+    )
+    assert len(packages) > 50
+    assert [package for package in packages if not is_free(package[1].strip())] == []
+    assert not is_free("GPL-3.0-or-later") and not is_free("MIT AND GPL-2.0")
+    assert is_free("(GPL-2.0 OR MIT) AND Zlib")
 
 
 def test_it_is_marked_as_typed():

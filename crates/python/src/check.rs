@@ -9,6 +9,8 @@ use crate::mesh::Mesh;
 use crate::report::dict;
 
 /// What can be said of a mesh: is it watertight, manifold, of how many parts, how large?
+///
+/// The dict is what `bonemesh check --json` prints.
 #[pyfunction]
 #[pyo3(signature = (mesh, *, progress=None, cancel=None))]
 pub(crate) fn check<'py>(

@@ -13,6 +13,9 @@ use crate::options::{self, Threads};
 use crate::volume::Volume;
 
 /// One point for each edge pixel of the bone, `(N, 3) float64` in mm, by slice, row and column.
+///
+/// `frame` is "patient" (DICOM LPS, pixel centres) or "image", the published method's: x = column
+/// dx - dx/2, y = row dy - dy/2, z = slice location.
 #[pyfunction]
 #[pyo3(signature = (
     volume, *, threshold_hu=350.0, sigma=1.0, frame="patient", threads=None, progress=None,
@@ -51,7 +54,11 @@ pub(crate) fn point_cloud<'py>(
     owned(py, rows(cloud.points_mm().to_vec()))
 }
 
-/// Mean over all points of the mean distance to the k nearest neighbours (mm).
+/// Mean over all points of the mean distance to the `k` nearest neighbours (mm).
+///
+/// With `include_self` the point itself, at distance 0, is one of the `k`; without it, its distance
+/// is left out of the mean, which then has `k - 1` terms. Fewer points than `k`: all there are.
+/// `spacing_mm` as in `tetrahedralize`.
 #[pyfunction]
 #[pyo3(signature = (
     points, *, k=100, include_self=true, spacing_mm=None, threads=None, progress=None, cancel=None
@@ -79,7 +86,10 @@ pub(crate) fn mean_neighbour_distance(
     })
 }
 
-/// Indices of the points to keep, `(K,) uint32`.
+/// Indices of the points to keep of a cloud, `(K,) uint32`.
+///
+/// `percent` is above 0 and at most 100, `sampler` "uniform", "random" or "thesis-uniform", `seed`
+/// decides the random one. `spacing_mm` as in `tetrahedralize`.
 #[pyfunction]
 #[pyo3(signature = (
     points, *, percent, sampler="uniform", seed=0, spacing_mm=None, threads=None, progress=None,

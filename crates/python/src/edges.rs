@@ -18,7 +18,12 @@ enum Images {
     Grey(Array3<f64>),
 }
 
-/// Canny's edges of a 2D image, or of each image of a 3D stack.
+/// Canny's edges of an image `[row, column]`, or of each image of a stack `[slice, row, column]`.
+///
+/// Pixel for pixel those of scikit-image's `feature.canny` with its usual borders. `sigma` is in
+/// pixels. `low` and `high` are gradients where the image's full range is 1: True of a boolean
+/// image, the type's largest value of whole numbers; floating-point images are taken as they are,
+/// in double precision.
 #[pyfunction]
 #[pyo3(signature = (image_or_stack, *, sigma=1.0, low=0.1, high=0.2, threads=None, progress=None, cancel=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments, as Python has them

@@ -6,7 +6,9 @@
 //! - Work stopped through a `Cancel`: `Cancelled`.
 //! - Everything else, our own bugs included: `BonemeshError`, the base of all but `OSError`.
 
-use bonemesh::{DicomError, Error, MeshError, SegmentError, SurfaceError};
+use bonemesh::{
+    CloudError, DelaunayError, DicomError, Error, MeshError, RoiError, SegmentError, SurfaceError,
+};
 use bonemesh_phantom::PhantomError;
 use pyo3::exceptions::{
     PyException, PyFileExistsError, PyFileNotFoundError, PyIsADirectoryError, PyNotADirectoryError,
@@ -145,23 +147,35 @@ pub(crate) fn raised(py: Python<'_>, error: &Error) -> PyErr {
 
 /// Whether the caller's argument, not the data, is what `error` speaks of.
 fn is_argument(error: &Error) -> bool {
-    matches!(
-        error,
-        Error::Volume(_)
-            | Error::Segment(
-                SegmentError::Threshold(_)
-                    | SegmentError::Sigma(_)
-                    | SegmentError::CannyThresholds { .. }
-            )
-            | Error::Surface(SurfaceError::Alpha(_))
-            | Error::Dicom(DicomError::Choice(_) | DicomError::NoSuchSeries { .. })
-            | Error::Mesh(
-                MeshError::Index { .. }
-                    | MeshError::NotFinite { .. }
-                    | MeshError::TooManyVertices(_)
-                    | MeshError::UnknownExtension { .. }
-            )
-    )
+    use DelaunayError as D;
+    match error {
+        Error::Volume(_) | Error::Surface(SurfaceError::Alpha(_)) => true,
+        Error::Segment(e) => matches!(
+            e,
+            SegmentError::Threshold(_)
+                | SegmentError::Sigma(_)
+                | SegmentError::CannyThresholds { .. }
+        ),
+        Error::Cloud(e) => matches!(e, CloudError::NeighbourCount(_)),
+        Error::Surface(SurfaceError::Delaunay(e)) => matches!(
+            e,
+            D::Alpha(_) | D::Coordinate { .. } | D::Span { .. } | D::Gram { .. }
+        ),
+        Error::Dicom(e) => matches!(e, DicomError::Choice(_) | DicomError::NoSuchSeries { .. }),
+        Error::Mesh(e) => matches!(
+            e,
+            MeshError::Index { .. }
+                | MeshError::NotFinite { .. }
+                | MeshError::TooManyVertices(_)
+                | MeshError::UnknownExtension { .. }
+        ),
+        Error::Roi(e) => matches!(
+            e,
+            RoiError::NoSelection | RoiError::OneVertex | RoiError::Index { .. }
+        ),
+        Error::Phantom(e) => matches!(e, PhantomError::MatrixTooSmall { .. }),
+        _ => false,
+    }
 }
 
 /// What is wrong with a file or folder itself, not with what is in it.

@@ -22,7 +22,13 @@ struct Changes<'a> {
     seed: Option<i128>,
 }
 
-/// Scan a phantom: a body of known shape as a CT volume.
+/// Scan a phantom: a body of known shape as a CT `Volume`.
+///
+/// - `name`: "line", "cylinder", "cube", "two-cubes", "cube-with-hole" and "curved" are drawn in
+///   pixels; "sphere-shell", "tube", "femur", "box-with-hole" and "head" are bodies in mm.
+/// - `coarser`: voxels this many times as long over the same field of view.
+/// - `orientation`: "axial", "reversed", "sagittal", "coronal", "oblique", "tilted", "feet-first".
+/// - `psf_px`, `noise_hu`, `seed`: blur in pixels, noise in HU and its seed; None is as usual.
 #[pyfunction]
 #[pyo3(signature = (name, *, coarser=1.0, orientation=None, psf_px=None, noise_hu=None, seed=None, threads=None, progress=None, cancel=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments, as Python has them
@@ -56,6 +62,9 @@ pub(crate) fn phantom(
 }
 
 /// Scan a phantom and write it as a DICOM CT series, with the truth about it beside the series.
+///
+/// `path` is a folder to make; the answer names its `series` folder, `files` and `truth` (JSON).
+/// The other arguments are those of `phantom`.
 #[pyfunction]
 #[pyo3(signature = (name, path, *, coarser=1.0, orientation=None, psf_px=None, noise_hu=None, seed=None, threads=None, progress=None, cancel=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments, as Python has them

@@ -10,7 +10,14 @@ use crate::errors;
 use crate::mesh::Mesh;
 use crate::options::Threads;
 
-/// Take the region under selected vertices out of a mesh, as a mesh of its own.
+/// Take the region under selected vertices out of a mesh, as a `Mesh` of its own.
+///
+/// - `selected_vertices`: indices into `mesh.vertices`, in any order.
+/// - `thickness_mm`: how deep the region reaches below the selection.
+/// - `method`: "thesis", slice by slice along one normal; the mesh must consist of slices.
+///
+/// `Mesh.report` says how many points were found behind the selection, and the rest as
+/// `bonemesh roi --json` prints it.
 #[pyfunction]
 #[pyo3(signature = (mesh, selected_vertices, *, thickness_mm, method="thesis", threads=None, progress=None, cancel=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments, as Python has them

@@ -19,7 +19,20 @@ enum Source {
     Volume(Arc<bonemesh::Volume>),
 }
 
-/// Make the surface of the bone in a CT folder or volume.
+/// Make the surface of the bone in a CT folder or volume: `Mesh` in patient millimetres (LPS).
+///
+/// - `threshold_hu`: bone is strictly above it; 350 suits skulls, 600 the cortical bone of limbs.
+/// - `method`: "alpha", the boundary of the Delaunay tetrahedra with a circumradius up to alpha.
+/// - `sigma`: Canny's smoothing in pixels.
+/// - `series`: UID or number (1 is the largest) where a folder holds several.
+/// - `crop`: "I0:I1,J0:J1,K0:K1" or three pairs: columns, rows, slices, from 0, ends not included.
+/// - `sample_percent`, `sampler`, `seed`: use only a part of the points; None uses all.
+/// - `alpha_mm`: largest circumradius; None takes the mean distance to 100 neighbours.
+/// - `threads`: worker threads; None is one a core. The result does not depend on it.
+/// - `progress`: called as `progress(stage, fraction)` on this thread.
+/// - `cancel`: a `Cancel` that stops the work.
+///
+/// `Mesh.report` has counts, topology, volume and seconds, as `bonemesh render --json` prints them.
 #[pyfunction]
 #[pyo3(signature = (
     path_or_volume, *, threshold_hu=350.0, method="alpha", sigma=1.0, series=None, crop=None,

@@ -118,6 +118,8 @@ impl Scan {
 }
 
 /// Look through a folder and its sub-folders for CT series, by content and not by name.
+///
+/// Only headers are read. The answer also lists what is in no series, and why.
 #[pyfunction]
 #[pyo3(signature = (path, *, threads=None, progress=None, cancel=None))]
 pub(crate) fn scan(
@@ -146,7 +148,7 @@ pub(crate) fn scan(
     })
 }
 
-/// The CT series in a folder and its sub-folders, largest first.
+/// The CT series in a folder and its sub-folders, largest first: `scan(path).series`.
 #[pyfunction]
 #[pyo3(signature = (path, *, threads=None, progress=None, cancel=None))]
 pub(crate) fn find_series(
@@ -159,7 +161,10 @@ pub(crate) fn find_series(
     Ok(scan(py, path, threads, progress, cancel)?.series)
 }
 
-/// Read a series of a folder: its UID, its number from 1, or None for the only plausible one.
+/// Read a series of a folder as a `Volume`.
+///
+/// `series` is its UID or its number (1 is the largest); None takes the only plausible one and
+/// refuses to guess between several.
 #[pyfunction]
 #[pyo3(signature = (path, series=None, *, threads=None, progress=None, cancel=None))]
 pub(crate) fn read_series(

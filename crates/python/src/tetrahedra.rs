@@ -14,6 +14,10 @@ use crate::mesh::Mesh;
 use crate::options::Threads;
 
 /// The Delaunay tetrahedra of points, `(M, 4) uint32` indices, each positively oriented.
+///
+/// Decided exactly, without flat cells. Whole numbers are lattice coordinates with steps of
+/// `spacing_mm` (1 without it). Floating-point numbers are free points in mm or, with `spacing_mm`,
+/// points on a lattice with these steps, whose ties rounding would hide.
 #[pyfunction]
 #[pyo3(signature = (points, *, spacing_mm=None, threads=None, progress=None, cancel=None))]
 pub(crate) fn tetrahedralize<'py>(
@@ -41,7 +45,9 @@ pub(crate) fn tetrahedralize<'py>(
     owned(py, rows(cells))
 }
 
-/// The surface of the Delaunay tetrahedra whose circumradius is at most `alpha_mm`.
+/// The outward surface of the Delaunay tetrahedra whose circumradius is at most `alpha_mm`.
+///
+/// `spacing_mm` as in `tetrahedralize`.
 #[pyfunction]
 #[pyo3(signature = (points, alpha_mm, *, spacing_mm=None, threads=None, progress=None, cancel=None))]
 pub(crate) fn alpha_surface(
