@@ -1,16 +1,32 @@
-//! Writes a phantom: `cargo run --release -p bonemesh-phantom --example write_phantom -- NAME DIR [FACTOR]`.
-use std::path::Path;
+//! Writes a phantom's DICOM series and truth, and says how long it took:
+//! `cargo run --release -p bonemesh-phantom --example write_phantom -- head OUT [COARSER [ORIENTATION]]`
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use bonemesh_phantom::{Phantom, ScanSettings, scan, write_phantom};
+use bonemesh_task::Task;
+
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let args: Vec<String> = std::env::args().collect();
-    let phantom: bonemesh_phantom::Phantom = args[1].parse()?;
-    let factor = args.get(3).map_or(Ok(1.0), |f| f.parse())?;
-    let settings = phantom.settings().coarser(factor);
-    let task = bonemesh_task::Task::default();
-    let start = std::time::Instant::now();
-    bonemesh_phantom::scan(phantom, &settings, &task)?;
-    println!("scan {:.2?}", start.elapsed());
-    let start = std::time::Instant::now();
-    bonemesh_phantom::write_phantom(phantom, Path::new(&args[2]), &settings, &task)?;
-    println!("scan and write {:.2?}", start.elapsed());
+    let mut words = std::env::args().skip(1);
+    let phantom: Phantom = words.next().unwrap_or_else(|| "head".to_owned()).parse()?;
+    let dir: PathBuf = words
+        .next()
+        .ok_or("name a new folder to write into")?
+        .into();
+    let coarser = words.next().map_or(Ok(1.0), |factor| factor.parse())?;
+    let orientation = words.next().unwrap_or_else(|| "axial".to_owned()).parse()?;
+    let settings = ScanSettings {
+        orientation,
+        ..phantom.settings().coarser(coarser)
+    };
+    let task = Task::default();
+    let start = Instant::now();
+    scan(phantom, &settings, &task)?;
+    println!("scanned in {:.2?}", start.elapsed());
+    let start = Instant::now();
+    let written = write_phantom(phantom, &dir, &settings, &task)?;
+    let files = written.files.len();
+    println!("scanned and wrote {files} files in {:.2?}", start.elapsed());
     Ok(())
 }

@@ -1,6 +1,11 @@
 //! Solids built from elementary ones, and their quick evaluation in a small ball of space.
 
+mod bounds;
+pub(crate) mod build;
+
 use std::sync::Arc;
+
+use bounds::Ball;
 
 use crate::primitives::{
     cuboid, cylinder, ellipsoid, holed_box, round_cone, smooth_least, smooth_min, triangle, tube,
@@ -68,7 +73,7 @@ pub(crate) enum Shape {
     },
     /// Parts joined; where two surfaces come within `blend` mm their edge is rounded.
     Union {
-        parts: Vec<Arc<Shape>>,
+        parts: Vec<Bounded>,
         blend: f64,
     },
     Intersect {
@@ -89,6 +94,37 @@ pub(crate) enum Shape {
     BothSides {
         part: Arc<Shape>,
     },
+}
+
+/// A part and a ball around it.
+#[derive(Clone, Debug)]
+pub(crate) struct Bounded {
+    part: Arc<Shape>,
+    ball: Ball,
+}
+
+/// Distance to a union: parts whose ball lies behind the nearest parts are passed over.
+fn union_distance(parts: &[Bounded], blend: f64, p: Vec3) -> f64 {
+    let nearest = (0..parts.len()).min_by(|a, b| {
+        let least = |i: usize| parts[i].ball.least(p);
+        least(*a).total_cmp(&least(*b))
+    });
+    let Some(nearest) = nearest else {
+        return f64::INFINITY;
+    };
+    let (mut first, mut second) = (parts[nearest].part.distance(p), f64::INFINITY);
+    for (i, bounded) in parts.iter().enumerate() {
+        if i == nearest || bounded.ball.least(p) >= second.min(first + blend) {
+            continue;
+        }
+        let d = bounded.part.distance(p);
+        if d < first {
+            (first, second) = (d, first);
+        } else {
+            second = second.min(d);
+        }
+    }
+    smooth_least([first, second].into_iter(), blend)
 }
 
 impl Shape {
@@ -115,9 +151,7 @@ impl Shape {
             Self::HoledBox { half, hole } => holed_box(p, *half, *hole),
             Self::Plate { corners, radius } => triangle(p, *corners) - radius,
             Self::HalfSpace { normal, offset } => dot(*normal, p) - offset,
-            Self::Union { parts, blend } => {
-                smooth_least(parts.iter().map(|s| s.distance(p)), *blend)
-            }
+            Self::Union { parts, blend } => union_distance(parts, *blend, p),
             Self::Intersect { parts, blend } => {
                 -smooth_least(parts.iter().map(|s| -s.distance(p)), *blend)
             }
@@ -133,13 +167,9 @@ impl Shape {
     /// that cannot matter there, and the distance at `centre`.
     pub(crate) fn near(self: &Arc<Self>, centre: Vec3, radius: f64) -> (Arc<Self>, f64) {
         match &**self {
-            Self::Union { parts, blend } => {
-                let rebuild = |parts, blend| Self::Union { parts, blend };
-                Self::keep_close(parts, *blend, centre, radius, 1.0, rebuild)
-            }
+            Self::Union { parts, blend } => Self::near_union(parts, *blend, centre, radius),
             Self::Intersect { parts, blend } => {
-                let rebuild = |parts, blend| Self::Intersect { parts, blend };
-                Self::keep_close(parts, *blend, centre, radius, -1.0, rebuild)
+                Self::near_intersection(parts, *blend, centre, radius)
             }
             Self::Cut { from, tool, blend } => {
                 let (from, df) = from.near(centre, radius);
@@ -164,150 +194,48 @@ impl Shape {
         }
     }
 
-    /// [`Shape::near`] of a union (`sign` 1) or an intersection (`sign` -1).
-    fn keep_close(
+    /// A part further from the nearest one than `2 radius + blend` neither wins nor blends
+    /// anywhere in the ball.
+    fn near_union(parts: &[Bounded], blend: f64, centre: Vec3, radius: f64) -> (Arc<Self>, f64) {
+        let reach = 2.0 * radius + blend;
+        let mut closer: Vec<(Bounded, f64)> = Vec::new();
+        let mut least = f64::INFINITY;
+        for bounded in parts {
+            if bounded.ball.least(centre) > least + reach {
+                continue;
+            }
+            let (part, d) = bounded.part.near(centre, radius);
+            least = least.min(d);
+            let ball = bounded.ball;
+            closer.push((Bounded { part, ball }, d));
+        }
+        closer.retain(|(_, d)| *d <= least + reach);
+        let d = smooth_least(closer.iter().map(|(_, d)| *d), blend);
+        let mut parts: Vec<Bounded> = closer.into_iter().map(|(part, _)| part).collect();
+        if parts.len() == 1 {
+            return (parts.swap_remove(0).part, d);
+        }
+        (Arc::new(Self::Union { parts, blend }), d)
+    }
+
+    fn near_intersection(
         parts: &[Arc<Self>],
         blend: f64,
         centre: Vec3,
         radius: f64,
-        sign: f64,
-        rebuild: impl Fn(Vec<Arc<Self>>, f64) -> Self,
     ) -> (Arc<Self>, f64) {
-        let closer: Vec<_> = parts.iter().map(|s| s.near(centre, radius)).collect();
-        let least = closer
+        let mut closer: Vec<_> = parts.iter().map(|s| s.near(centre, radius)).collect();
+        let most = closer
             .iter()
-            .map(|(_, d)| sign * d)
-            .fold(f64::INFINITY, f64::min);
-        let d = smooth_least(closer.iter().map(|(_, d)| sign * d), blend);
-        // A part this far from the nearest one neither wins nor blends anywhere in the ball.
-        let limit = least + 2.0 * radius + blend;
-        let mut kept: Vec<Arc<Self>> = closer
-            .into_iter()
-            .filter(|(_, d)| sign * d <= limit)
-            .map(|(s, _)| s)
-            .collect();
-        let pruned = if kept.len() == 1 {
-            kept.swap_remove(0)
-        } else {
-            Arc::new(rebuild(kept, blend))
-        };
-        (pruned, sign * d)
-    }
-}
-
-/// Short names for building trees.
-pub(crate) mod build {
-    use super::{Arc, Shape, Vec3};
-    use crate::vector::unit;
-
-    pub(crate) type Solid = Arc<Shape>;
-
-    pub(crate) fn ball(centre: Vec3, radius: f64) -> Solid {
-        Arc::new(Shape::Ball { centre, radius })
-    }
-    pub(crate) fn ellipsoid(centre: Vec3, radii: Vec3) -> Solid {
-        Arc::new(Shape::Ellipsoid { centre, radii })
-    }
-    pub(crate) fn cone(a: Vec3, ra: f64, b: Vec3, rb: f64) -> Solid {
-        Arc::new(Shape::RoundCone { a, b, ra, rb })
-    }
-    /// A smooth line through `points`, `pieces` straight ones from each to the next (Catmull and
-    /// Rom 1974; the ends run out straight).
-    pub(crate) fn curve<const N: usize>(points: &[[f64; N]], pieces: usize) -> Vec<[f64; N]> {
-        let last = points.len() - 1;
-        let at = |i: usize, k: usize| points[(i + k).saturating_sub(1).min(last)];
-        let mut line = Vec::with_capacity(last * pieces + 1);
-        for i in 0..last {
-            let [a, b, c, d] = [at(i, 0), at(i, 1), at(i, 2), at(i, 3)];
-            for step in 0..pieces {
-                let t = step as f64 / pieces as f64;
-                line.push(std::array::from_fn(|n| {
-                    let square = 2.0 * a[n] - 5.0 * b[n] + 4.0 * c[n] - d[n];
-                    let cube = 3.0 * (b[n] - c[n]) + d[n] - a[n];
-                    b[n] + 0.5 * t * (c[n] - a[n] + t * (square + t * cube))
-                }));
-            }
+            .map(|(_, d)| *d)
+            .fold(f64::NEG_INFINITY, f64::max);
+        closer.retain(|(_, d)| *d >= most - 2.0 * radius - blend);
+        let d = -smooth_least(closer.iter().map(|(_, d)| -d), blend);
+        let mut parts: Vec<Arc<Self>> = closer.into_iter().map(|(part, _)| part).collect();
+        if parts.len() == 1 {
+            return (parts.swap_remove(0), d);
         }
-        line.push(points[last]);
-        line
-    }
-    /// A smooth rod through points `[x, y, z, radius]`.
-    pub(crate) fn cord(points: &[[f64; 4]]) -> Solid {
-        let line = curve(points, 4);
-        let links = line
-            .windows(2)
-            .map(|w| {
-                let [a, b] = [w[0], w[1]];
-                cone([a[0], a[1], a[2]], a[3], [b[0], b[1], b[2]], b[3])
-            })
-            .collect();
-        union(links)
-    }
-    /// Round cones in a row through `(point, radius)`.
-    pub(crate) fn chain(points: &[(Vec3, f64)], blend: f64) -> Solid {
-        let links = points
-            .windows(2)
-            .map(|w| cone(w[0].0, w[0].1, w[1].0, w[1].1))
-            .collect();
-        blended(blend, links)
-    }
-    pub(crate) fn block(centre: Vec3, half: Vec3, round: f64) -> Solid {
-        let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        turned_block(centre, axes, half, round)
-    }
-    pub(crate) fn turned_block(centre: Vec3, axes: [Vec3; 3], half: Vec3, round: f64) -> Solid {
-        Arc::new(Shape::Cuboid {
-            centre,
-            axes,
-            half,
-            round,
-        })
-    }
-    pub(crate) fn rod(a: Vec3, b: Vec3, radius: f64) -> Solid {
-        Arc::new(Shape::Cylinder { a, b, radius })
-    }
-    pub(crate) fn plate(corners: [Vec3; 3], radius: f64) -> Solid {
-        Arc::new(Shape::Plate { corners, radius })
-    }
-    /// A smooth band between two lines with the same number of points.
-    pub(crate) fn band(one: &[Vec3], other: &[Vec3], radius: f64) -> Solid {
-        let (one, other) = (curve(one, 3), curve(other, 3));
-        let plates = one
-            .windows(2)
-            .zip(other.windows(2))
-            .flat_map(|(u, l)| {
-                [
-                    plate([u[0], u[1], l[0]], radius),
-                    plate([u[1], l[1], l[0]], radius),
-                ]
-            })
-            .collect();
-        union(plates)
-    }
-    /// Everything on the side of the plane through `point` that `normal` points away from.
-    pub(crate) fn below(point: Vec3, normal: Vec3) -> Solid {
-        let normal = unit(normal);
-        let offset = crate::vector::dot(normal, point);
-        Arc::new(Shape::HalfSpace { normal, offset })
-    }
-    pub(crate) fn union(parts: Vec<Solid>) -> Solid {
-        blended(0.0, parts)
-    }
-    pub(crate) fn blended(blend: f64, parts: Vec<Solid>) -> Solid {
-        Arc::new(Shape::Union { parts, blend })
-    }
-    pub(crate) fn common(blend: f64, parts: Vec<Solid>) -> Solid {
-        Arc::new(Shape::Intersect { parts, blend })
-    }
-    pub(crate) fn cut(from: Solid, tool: Solid, blend: f64) -> Solid {
-        Arc::new(Shape::Cut { from, tool, blend })
-    }
-    pub(crate) fn grow(part: &Solid, by: f64) -> Solid {
-        let part = Arc::clone(part);
-        Arc::new(Shape::Grow { part, by })
-    }
-    pub(crate) fn both_sides(part: Solid) -> Solid {
-        Arc::new(Shape::BothSides { part })
+        (Arc::new(Self::Intersect { parts, blend }), d)
     }
 }
 
