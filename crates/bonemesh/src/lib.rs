@@ -26,7 +26,7 @@
 //! ```
 //!
 //! The method is that of E. Rier, *Generation and segmentation of 3D models of bone from CT
-//! images based on 3D point clouds*, `MASc` thesis, McMaster University.
+//! images based on 3D point clouds*, MASc thesis, McMaster University.
 
 pub mod cli;
 mod error;

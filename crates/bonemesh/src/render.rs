@@ -7,7 +7,7 @@ use bonemesh_cloud::{Frame, PointCloud, extract_points, mean_neighbour_distance,
 use bonemesh_dicom::{find_series, read_series};
 use bonemesh_mesh::TriangleMesh;
 use bonemesh_segment::{detect_edges, threshold};
-use bonemesh_surface::alpha_surface;
+use bonemesh_surface::{alpha_tetrahedra, boundary_surface};
 use bonemesh_task::{Task, pool};
 use bonemesh_volume::Volume;
 
@@ -129,8 +129,10 @@ fn cloud_to_mesh(
         None => mean_neighbour_distance(cloud, ALPHA_NEIGHBOURS, true, task)?,
     };
     seconds.neighbours = lap(&mut clock);
-    let surface = alpha_surface(cloud, alpha_mm, task)?;
+    let cells = alpha_tetrahedra(cloud, alpha_mm, task)?;
     seconds.tetrahedra = lap(&mut clock);
+    let surface = boundary_surface(cloud, &cells, task)?;
+    drop(cells);
     let topology = check(&surface.mesh, task)?;
     seconds.surface = lap(&mut clock);
     seconds.total =

@@ -11,7 +11,7 @@
 //! they bound no volume.
 
 use bonemesh_cloud::PointCloud;
-use bonemesh_delaunay::{Points, alpha_complex};
+use bonemesh_delaunay::{Points, Tetrahedra, alpha_complex};
 use bonemesh_mesh::TriangleMesh;
 use bonemesh_task::Task;
 
@@ -31,40 +31,58 @@ pub struct AlphaSurface {
     pub volume_mm3: f64,
 }
 
-/// The surface of the Delaunay tetrahedra of `cloud` with a circumradius of at most `alpha_mm`.
-///
-/// An infinite alpha gives the convex hull. The stages are `tetrahedra` and `surface`.
+/// The surface of the Delaunay tetrahedra of `cloud` with a circumradius of at most `alpha_mm`:
+/// [`alpha_tetrahedra`], then [`boundary_surface`].
 ///
 /// # Errors
-/// [`SurfaceError::Alpha`], [`SurfaceError::NothingKept`], and [`SurfaceError::Delaunay`] where
-/// the points enclose no space.
+/// Those of both.
 pub fn alpha_surface(
     cloud: &PointCloud,
     alpha_mm: f64,
     task: &Task,
 ) -> Result<AlphaSurface, SurfaceError> {
+    let cells = alpha_tetrahedra(cloud, alpha_mm, task)?;
+    boundary_surface(cloud, &cells, task)
+}
+
+/// The Delaunay tetrahedra of `cloud` with a circumradius of at most `alpha_mm`.
+///
+/// An infinite alpha keeps them all. The stage is `tetrahedra`.
+///
+/// # Errors
+/// [`SurfaceError::Alpha`], [`SurfaceError::NothingKept`], and [`SurfaceError::Delaunay`] where
+/// the points enclose no space.
+pub fn alpha_tetrahedra(
+    cloud: &PointCloud,
+    alpha_mm: f64,
+    task: &Task,
+) -> Result<Tetrahedra, SurfaceError> {
     if alpha_mm.is_nan() || alpha_mm <= 0.0 {
         return Err(SurfaceError::Alpha(alpha_mm));
     }
-    let (points, mirrored) = match cloud.lattice() {
-        Some(lattice) => {
-            let affine = &lattice.frame_from_lattice;
-            let (coordinates, gram) = (&lattice.coordinates[..], affine.gram());
-            let points = Points::Lattice { coordinates, gram };
-            (points, affine.determinant() < 0.0)
-        }
-        None => (Points::Free(cloud.points_mm()), false),
-    };
-    let cells = alpha_complex(points, alpha_mm, task)?;
+    let cells = alpha_complex(points(cloud), alpha_mm, task)?;
     if cells.cells.is_empty() {
         return Err(SurfaceError::NothingKept { alpha_mm });
     }
+    Ok(cells)
+}
+
+/// The outward boundary of tetrahedra over the points of `cloud`. The stage is `surface`.
+///
+/// # Errors
+/// [`SurfaceError::Cancelled`]
+pub fn boundary_surface(
+    cloud: &PointCloud,
+    cells: &Tetrahedra,
+    task: &Task,
+) -> Result<AlphaSurface, SurfaceError> {
     task.begin("surface", 3);
-    let volume_mm3 = cells.volume_mm3(points);
+    let volume_mm3 = cells.volume_mm3(points(cloud));
     task.advance(1)?;
     let mut triangles = cells.boundary();
     task.advance(1)?;
-    if mirrored {
+    let frame = cloud.lattice().map(|l| &l.frame_from_lattice);
+    if frame.is_some_and(|f| f.determinant() < 0.0) {
         // Outward among columns, rows and slices is inward in a frame of the other hand.
         for triangle in &mut triangles {
             triangle.swap(1, 2);
@@ -78,6 +96,17 @@ pub fn alpha_surface(
         tetrahedra: cells.cells.len(),
         volume_mm3,
     })
+}
+
+/// The cloud as its lattice, where it has one, or as free points.
+fn points(cloud: &PointCloud) -> Points<'_> {
+    match cloud.lattice() {
+        Some(lattice) => Points::Lattice {
+            coordinates: &lattice.coordinates,
+            gram: lattice.frame_from_lattice.gram(),
+        },
+        None => Points::Free(cloud.points_mm()),
+    }
 }
 
 /// The points that triangles name, in order; renumbers the triangles.

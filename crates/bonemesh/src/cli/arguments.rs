@@ -254,7 +254,7 @@ impl PhantomArguments {
     pub(super) fn settings(&self) -> ScanSettings {
         let settings = ScanSettings {
             seed: self.seed,
-            orientation: self.orientation.clone(),
+            orientation: self.orientation,
             ..self.name.settings().coarser(self.coarser)
         };
         if self.ideal {
@@ -270,15 +270,16 @@ fn phantom(name: &str) -> Result<Phantom, String> {
 }
 
 fn phantom_names() -> String {
-    let mut text = String::from("Name of the phantom:");
-    for phantom in Phantom::ALL {
-        text.push_str(&format!(
-            "\n  {:16}{}",
-            phantom.name(),
-            phantom.description()
-        ));
-    }
-    text
+    let line = |p: Phantom| {
+        format!(
+            "
+  {:16}{}",
+            p.name(),
+            p.description()
+        )
+    };
+    let lines: String = Phantom::ALL.into_iter().map(line).collect();
+    format!("Name of the phantom:{lines}")
 }
 
 impl EdgeArguments {
