@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import bonemesh
 import numpy as np
 import pytest
@@ -38,6 +40,11 @@ def slices_of(volume: bonemesh.Volume, most: int = 12) -> np.ndarray:
     return hu[:: max(1, len(hu) // most)]
 
 
+@cache
+def coarse_head() -> bonemesh.Volume:
+    return bonemesh.phantom("head", coarser=2.5)
+
+
 @pytest.mark.parametrize("name", PHANTOMS)
 def test_no_pixel_of_a_phantom_differs(name):
     mask = slices_of(bonemesh.phantom(name, coarser=PHANTOMS[name])) > 350
@@ -51,7 +58,7 @@ def test_no_pixel_of_a_phantom_differs(name):
 @pytest.mark.parametrize("sigma", SIGMAS)
 def test_no_pixel_differs_with_other_settings(sigma, thresholds):
     low, high = thresholds
-    hu = slices_of(bonemesh.phantom("head", coarser=2.5), most=5)
+    hu = slices_of(coarse_head(), most=5)
     for threshold in (200, 640):
         mask = hu > threshold
         edges = bonemesh.canny(mask, sigma=sigma, low=low, high=high)

@@ -12,7 +12,7 @@ RELATIVE = 1e-9
 
 def alpha_by_scipy(points: np.ndarray, k: int, include_self: bool) -> float:
     k = min(k, len(points))
-    distances, _ = KDTree(points).query(points, k=k)
+    distances, _ = KDTree(points).query(points, k=k, workers=-1)
     return float(distances.mean() if include_self else distances[:, 1:].mean())
 
 
@@ -129,3 +129,11 @@ def test_the_published_sampler_by_its_definition():
             left = [index for index in left if index not in nearest]
     kept = bonemesh.sample(points, percent=30, sampler="thesis-uniform")
     assert sorted(kept.tolist()) == sorted(expected)
+
+
+@pytest.mark.parametrize("name", ["headsq", "cranium", "philips-skull"])
+def test_the_alpha_of_real_series(real_ct, name):
+    points = bonemesh.point_cloud(bonemesh.read_series(real_ct(name)), threshold_hu=300)
+    alpha = bonemesh.mean_neighbour_distance(points)
+    print(f"{name}: {len(points)} points, alpha {alpha} mm")
+    assert alpha == pytest.approx(alpha_by_scipy(points, 100, True), rel=RELATIVE)

@@ -63,10 +63,10 @@ def test_progress_comes_on_the_calling_thread_and_rises(volume):
     assert len(calls) == after
 
 
-def test_even_a_short_call_reports_once():
+def test_even_a_short_call_reports_its_end():
     calls = []
     bonemesh.canny(np.zeros((8, 8), bool), progress=lambda *args: calls.append(args))
-    assert calls == [("edges", 1.0)]
+    assert calls[-1] == ("edges", 1.0)
 
 
 def test_progress_works_from_any_thread(volume):
