@@ -117,6 +117,12 @@ def test_an_image_is_a_stack_of_one():
     assert (bonemesh.canny(mask, threads=3) == bonemesh.canny(mask, threads=1)).all()
 
 
+def test_truth_is_any_byte_but_zero():
+    mask = bonemesh.phantom("curved").hu[0] > 350
+    odd = (mask * np.uint8(77)).view(bool)
+    assert (bonemesh.canny(odd) == bonemesh.canny(mask)).all()
+
+
 def test_the_published_ring_has_2156_edge_pixels_a_slice():
     edges = bonemesh.canny(bonemesh.phantom("cylinder").hu > 350)
     assert len(edges) == 10

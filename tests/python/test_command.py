@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 import bonemesh
@@ -493,3 +495,38 @@ def test_a_closed_pipe_is_no_failure(ct_folder):
         run.stdout.close()
         assert run.stderr.read() == b""
         assert run.wait(60) == DONE
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
+def test_ctrl_c_ends_the_command_and_leaves_no_file(tmp_path):
+    scan = bonemesh.write_phantom("sphere-shell", tmp_path / "sphere")["series"]
+    target = tmp_path / "out"
+    target.mkdir()
+    words = [
+        sys.executable,
+        "-m",
+        "bonemesh",
+        "render",
+        scan,
+        "-o",
+        str(target / "sphere.stl"),
+    ]
+    with subprocess.Popen(
+        words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as run:
+        while not any(name.startswith("bonemesh-") for name in threads_of(run.pid)):
+            assert run.poll() is None
+        run.send_signal(signal.SIGINT)
+        out, err = run.communicate(timeout=60)
+    assert run.returncode == FAILED
+    assert (out, err) == ("", "bonemesh: cancelled\n")
+    assert list(target.iterdir()) == []
+
+
+def threads_of(process: int) -> list[str]:
+    """Names of the threads of a process, as the system lists them."""
+    names = []
+    for file in Path(f"/proc/{process}/task").glob("*/comm"):
+        with suppress(FileNotFoundError, ProcessLookupError):
+            names.append(file.read_text())
+    return names

@@ -103,7 +103,8 @@ fn images(input: &Input<'_>) -> PyResult<Images> {
     };
     let joined = "as many pixels as the shape says: anything else is a bug";
     if input.is_bool() {
-        let pixels = input.read("bool", <[bool]>::to_vec)?;
+        // Not read as `bool`: memory of that name may hold other bytes than 0 and 1.
+        let pixels = input.read("uint8", |p: &[u8]| p.iter().map(|p| *p != 0).collect())?;
         return Ok(Images::Bool(
             Array3::from_shape_vec(shape, pixels).expect(joined),
         ));
