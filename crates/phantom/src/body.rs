@@ -15,7 +15,7 @@ pub const AIR_HU: f64 = -1000.0;
 pub trait Body: Send + Sync {
     /// Signed distance (mm) of `p` to the bone surface, negative inside bone.
     ///
-    /// Sign and zero set are exact, and the value never exceeds the true distance; where it
+    /// Sign and zero set are exact, and its size never exceeds the true distance; where it
     /// equals it is said at each [`Phantom`](crate::Phantom).
     fn signed_distance_mm(&self, p: [f64; 3]) -> f64;
 

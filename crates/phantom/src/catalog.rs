@@ -28,11 +28,10 @@ pub enum Phantom {
     SphereShell,
     /// Straight tube with flat ends; its distance is exact everywhere.
     Tube,
-    /// Left femur; its distance is exact along the shaft and inside the canal's middle part,
-    /// a lower bound near the blends of head, neck, trochanter and condyles.
+    /// Left femur; its distance is exact around the shaft, in its wall and in the canal, a lower
+    /// bound near the blends of head, neck, trochanters and condyles.
     Femur,
-    /// Box with a square hole through it; its distance is exact outside and near flat faces, a
-    /// lower bound deep inside behind corners of the hole.
+    /// Box with a square hole through it; its distance is exact everywhere.
     BoxWithHole,
     /// Head with skull, jaw and teeth; its distance is exact only where one part is near.
     Head,

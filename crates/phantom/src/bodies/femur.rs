@@ -2,7 +2,7 @@
 
 use super::Known;
 use crate::body::Layers;
-use crate::shape::build::{ball, blended, chain, cone, cut, ellipsoid};
+use crate::shape::build::{ball, blended, cone, cord, cut, ellipsoid};
 
 /// Middle of the bone's bounding box (mm).
 pub(crate) const FEMUR_CENTRE: [f64; 3] = [-10.0, 0.0, 7.0];
@@ -13,16 +13,13 @@ const HEAD_CENTRE: [f64; 3] = [-44.0, -9.0, 196.0];
 const HEAD_RADIUS: f64 = 23.0;
 
 pub(crate) fn femur() -> Known {
-    let shaft = chain(
-        &[
-            ([0.0, 0.0, 160.0], 16.0),
-            ([0.0, -6.0, 50.0], 13.5),
-            ([0.0, -8.0, -40.0], 13.5),
-            ([0.0, -2.0, -130.0], 18.0),
-            ([0.0, 2.0, -172.0], 25.0),
-        ],
-        3.0,
-    );
+    let shaft = cord(&[
+        [0.0, 0.0, 160.0, 16.0],
+        [0.0, -6.0, 50.0, 13.5],
+        [0.0, -8.0, -40.0, 13.5],
+        [0.0, -2.0, -130.0, 18.0],
+        [0.0, 2.0, -172.0, 25.0],
+    ]);
     let neck = cone([0.0, 1.0, 158.0], 15.0, HEAD_CENTRE, 13.0);
     let greater = cone([11.0, 5.0, 160.0], 15.0, [14.0, 13.0, 186.0], 8.5);
     let lesser = cone([-5.0, 6.0, 132.0], 11.0, [-15.0, 16.0, 128.0], 5.5);
@@ -42,15 +39,12 @@ pub(crate) fn femur() -> Known {
         ],
     );
     let outer = cut(cut(solid, notch, 5.0), groove, 5.0);
-    let canal = chain(
-        &[
-            ([0.0, 0.0, 150.0], 9.0),
-            ([0.0, -6.0, 50.0], 6.5),
-            ([0.0, -8.0, -40.0], 6.5),
-            ([0.0, -2.0, -135.0], 11.0),
-        ],
-        0.0,
-    );
+    let canal = cord(&[
+        [0.0, 0.0, 150.0, 9.0],
+        [0.0, -6.0, 50.0, 6.5],
+        [0.0, -8.0, -40.0, 6.5],
+        [0.0, -2.0, -135.0, 11.0],
+    ]);
     let mut layers = Layers::bone_in_soft_tissue(cut(outer, canal.clone(), 0.0));
     layers.under(canal, MARROW_HU);
     Known {
@@ -58,8 +52,8 @@ pub(crate) fn femur() -> Known {
         volume_mm3: None,
         parameters: vec![
             ("head_radius_mm", HEAD_RADIUS),
-            ("canal_radius_at_mid_shaft_mm", 6.5),
-            ("shaft_radius_at_mid_shaft_mm", 13.5),
+            ("canal_radius_at_z_50_mm", 6.5),
+            ("shaft_radius_at_z_50_mm", 13.5),
         ],
         landmarks: vec![
             ("head_centre", HEAD_CENTRE),
