@@ -1,0 +1,73 @@
+"""The panel shows the published fields in their order, and the job that runs."""
+
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+from conftest import Blender
+
+FIELDS = [
+    "Select File Directory of CT Images",
+    "[ct_directory]",
+    "HU Threshold [hu_threshold]",
+    "Thickness of Cut (mm) [cut_thickness]",
+    "Mesh Filename",
+    "[mesh_name]",
+    "Select File Location to Save Mesh",
+    "[mesh_directory]",
+    "Render Surface Mesh",
+    "Segmented Mesh Filename",
+    "[roi_name]",
+    "Select Region of Interest",
+]
+ADVANCED = [
+    "series",
+    "crop",
+    "method",
+    "sigma",
+    "sample_percent",
+    "sampler",
+    "center_in_world",
+]
+
+
+@pytest.fixture(scope="module")
+def panel(
+    extension_zip: Path, ct: Path, tmp_path_factory: pytest.TempPathFactory
+) -> dict[str, Any]:
+    return Blender(extension_zip, tmp_path_factory.mktemp("panel")).run("panel", ct=ct)
+
+
+def test_the_fields_are_in_the_published_order(panel: dict[str, Any]) -> None:
+    assert panel["main"] == FIELDS
+    assert panel["tabs"] == ["Segment CT", "Segment CT"]
+
+
+def test_advanced_settings_are_there_but_closed(panel: dict[str, Any]) -> None:
+    assert panel["closed"] == [False, True]
+    assert [text.split("[")[1].rstrip("]") for text in panel["advanced"]] == ADVANCED
+
+
+def test_limits_and_defaults_are_the_published_ones(panel: dict[str, Any]) -> None:
+    assert panel["limits"]["hu_threshold"] == [-1024, 3071, 350]
+    assert panel["limits"]["cut_thickness"][0] == 0.0
+    assert panel["limits"]["cut_thickness"][2] == 5.0
+
+
+def test_a_running_job_is_shown_with_its_cancel_button(panel: dict[str, Any]) -> None:
+    title, progress, button = panel["busy"][len(FIELDS) :]
+    assert title == "Render Surface Mesh"
+    assert progress.startswith("progress: ")
+    assert len(progress) > len("progress: ")
+    assert button == "Cancel"
+
+
+def test_the_series_of_the_folder_are_suggested(
+    panel: dict[str, Any], bonemesh: ModuleType, ct: Path
+) -> None:
+    (series,) = bonemesh.find_series(ct)
+    ((number, text),) = panel["series"]
+    assert number == str(series.number)
+    assert f"{series.slices} slices" in text
+    assert panel["no series"] == []
