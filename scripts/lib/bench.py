@@ -15,7 +15,16 @@ import tempfile
 from pathlib import Path
 
 PEER = Path(__file__).with_name("published_method.py")
-STEPS = ["read", "edges", "cloud", "neighbours", "tetrahedra", "surface", "write", "total"]
+STEPS = [
+    "read",
+    "edges",
+    "cloud",
+    "neighbours",
+    "tetrahedra",
+    "surface",
+    "write",
+    "total",
+]
 
 
 def run(command: list[str]) -> dict:
@@ -36,7 +45,17 @@ def measure(bonemesh: str, folder: str, hu: str, runs: int) -> dict[str, list[di
     found: dict[str, list[dict]] = {"bonemesh": [], "published": []}
     with tempfile.TemporaryDirectory() as scratch:
         for _ in range(runs):
-            ours = [bonemesh, "render", folder, "--hu", hu, "--method", "alpha", "--json", "-o"]
+            ours = [
+                bonemesh,
+                "render",
+                folder,
+                "--hu",
+                hu,
+                "--method",
+                "alpha",
+                "--json",
+                "-o",
+            ]
             found["bonemesh"].append(run([*ours, f"{scratch}/ours.stl"]))
             peer = [sys.executable, str(PEER), folder, hu, f"{scratch}/peer.stl"]
             found["published"].append(run(peer))
@@ -59,13 +78,25 @@ def row(name: str, ours: float, peer: float, unit: str) -> str:
 
 def table(name: str, found: dict[str, list[dict]]) -> str:
     ours, peer = found["bonemesh"], found["published"]
-    lines = [f"### {name}", "", "| | Bonemesh | published method | ratio |", "|---|---|---|---|"]
-    lines += [row(s, median(ours, "seconds", s), median(peer, "seconds", s), "s") for s in STEPS]
-    lines.append(row("peak memory", median(ours, "peak_mib"), median(peer, "peak_mib"), "MiB"))
+    lines = [
+        f"### {name}",
+        "",
+        "| | Bonemesh | published method | ratio |",
+        "|---|---|---|---|",
+    ]
+    lines += [
+        row(s, median(ours, "seconds", s), median(peer, "seconds", s), "s")
+        for s in STEPS
+    ]
+    lines.append(
+        row("peak memory", median(ours, "peak_mib"), median(peer, "peak_mib"), "MiB")
+    )
     for key in ["points", "alpha_mm", "tetrahedra", "triangles", "volume_mm3"]:
         a, b = median(ours, key), median(peer, key)
         lines.append(f"| {key} | {a:.10g} | {b:.10g} | {(a / b - 1) * 100:+.4f} % |")
-    lines.append(f"| watertight | {ours[0]['watertight']} | {peer[0]['watertight']} | |")
+    lines.append(
+        f"| watertight | {ours[0]['watertight']} | {peer[0]['watertight']} | |"
+    )
     return "\n".join(lines) + "\n"
 
 
@@ -80,7 +111,9 @@ def main(bonemesh: str, out: str, runs: str, hu: str, *folders: str) -> None:
         print(text[-1], flush=True)
     target = Path(out)
     (target / "bench.md").write_text("\n".join(text))
-    (target / "bench.json").write_text(json.dumps({"machine": head, "runs": data}, indent=1))
+    (target / "bench.json").write_text(
+        json.dumps({"machine": head, "runs": data}, indent=1)
+    )
 
 
 if __name__ == "__main__":

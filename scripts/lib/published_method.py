@@ -35,12 +35,16 @@ class Stopwatch:
 
 def read_slices(folder: Path) -> list[pydicom.Dataset]:
     """Every image of the folder that says where its slice lies, by InstanceNumber."""
-    datasets = [pydicom.dcmread(f, force=True) for f in sorted(folder.iterdir()) if f.is_file()]
+    datasets = [
+        pydicom.dcmread(f, force=True) for f in sorted(folder.iterdir()) if f.is_file()
+    ]
     slices = [d for d in datasets if "PixelData" in d and "SliceLocation" in d]
     return sorted(slices, key=lambda d: int(d.InstanceNumber))
 
 
-def edge_points(slices: list[pydicom.Dataset], hu: float, watch: Stopwatch) -> np.ndarray:
+def edge_points(
+    slices: list[pydicom.Dataset], hu: float, watch: Stopwatch
+) -> np.ndarray:
     """The cloud of edge pixels in mm, in the image frame."""
     first = slices[0]
     stored = np.stack([d.pixel_array for d in slices]).astype(float)
@@ -68,7 +72,9 @@ def main(folder: str, hu: str, out: str) -> None:
     watch.lap("surface")
     surface.save(out)
     watch.lap("write")
-    tetrahedra = kept.extract_cells(np.flatnonzero(kept.celltypes == pyvista.CellType.TETRA))
+    tetrahedra = kept.extract_cells(
+        np.flatnonzero(kept.celltypes == pyvista.CellType.TETRA)
+    )
     report = {
         "points": len(cloud),
         "alpha_mm": alpha,

@@ -52,7 +52,11 @@ fn bench(c: &mut Criterion) {
         b.iter(|| tetrahedralize(black_box(shell), &task));
     });
     group.bench_function("boundary of the shell's alpha complex", |b| {
-        b.iter(|| black_box(&cells).boundary());
+        b.iter(|| {
+            black_box(&cells)
+                .boundary(&Task::default())
+                .expect("nobody cancels")
+        });
     });
     group.bench_function("50,000 random points", |b| {
         b.iter(|| tetrahedralize(black_box(Points::Free(&free)), &task));

@@ -1,5 +1,6 @@
 //! The facets that only one cell has.
 
+use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;
 
 use crate::{Points, Tetrahedra};
@@ -7,12 +8,18 @@ use crate::{Points, Tetrahedra};
 /// Facets sorted by one thread at a time.
 const FACETS_PER_CHUNK: usize = 1 << 14;
 
+/// Cells done between two looks at the cancel switch: a few milliseconds.
+const CELLS_PER_CHECK: usize = 1 << 16;
+
 impl Tetrahedra {
     /// Triangles that bound the cells: the facets of exactly one cell, counter-clockwise seen
     /// from outside in the input's coordinates, sorted by their vertices, the smallest first.
     ///
     /// The boundary of an alpha complex may touch itself in edges and vertices.
-    pub fn boundary(&self) -> Vec<[u32; 3]> {
+    ///
+    /// # Errors
+    /// [`Cancelled`]
+    pub fn boundary(&self, task: &Task) -> Result<Vec<[u32; 3]>, Cancelled> {
         let largest = self.cells.as_flattened().iter().copied().max().unwrap_or(0);
         // The sort below has a place for every index and 31 bits for each: should the indices
         // be sparse or larger, number the used ones first.
@@ -22,13 +29,13 @@ impl Tetrahedra {
             used.dedup();
             let place = |v: u32| used.partition_point(|&u| u < v) as u32;
             let cells = self.cells.par_iter().map(|c| c.map(place)).collect();
-            let mut triangles = Self { cells }.boundary();
+            let mut triangles = Self { cells }.boundary(task)?;
             for v in triangles.as_flattened_mut() {
                 *v = used[*v as usize];
             }
-            return triangles;
+            return Ok(triangles);
         }
-        single_facets(&self.cells, largest as usize + 1)
+        single_facets(&self.cells, largest as usize + 1, task)
     }
 
     /// The cells' total volume in mm^3: exact on a lattice but for one last rounding.
@@ -83,10 +90,15 @@ fn key([a, b, c]: [u32; 3]) -> (u32, u64) {
 }
 
 /// Facets that occur once: put in bins by their smallest vertex, then sorted bin by bin.
-fn single_facets(cells: &[[u32; 4]], vertices: usize) -> Vec<[u32; 3]> {
+fn single_facets(
+    cells: &[[u32; 4]],
+    vertices: usize,
+    task: &Task,
+) -> Result<Vec<[u32; 3]>, Cancelled> {
     let mut ends = vec![0usize; vertices + 1];
-    for &cell in cells {
-        for facet in facets(cell) {
+    for cells in cells.chunks(CELLS_PER_CHECK) {
+        task.check()?;
+        for facet in cells.iter().copied().flat_map(facets) {
             ends[key(facet).0 as usize] += 1;
         }
     }
@@ -98,8 +110,9 @@ fn single_facets(cells: &[[u32; 4]], vertices: usize) -> Vec<[u32; 3]> {
     }
     // Where each bin starts, until it is filled; then where it ends.
     let mut keys = vec![0u64; total];
-    for &cell in cells {
-        for facet in facets(cell) {
+    for cells in cells.chunks(CELLS_PER_CHECK) {
+        task.check()?;
+        for facet in cells.iter().copied().flat_map(facets) {
             let (first, key) = key(facet);
             let place = &mut ends[first as usize];
             keys[*place] = key;
@@ -107,11 +120,12 @@ fn single_facets(cells: &[[u32; 4]], vertices: usize) -> Vec<[u32; 3]> {
         }
     }
     let bins = split_into_chunks(&mut keys, &ends);
-    let chunks: Vec<Vec<[u32; 3]>> = bins
-        .into_par_iter()
-        .map(|(first_bin, ends, keys)| singles_of_chunk(first_bin, ends, keys))
-        .collect();
-    chunks.concat()
+    let singles = |(first_bin, ends, keys)| {
+        task.check()?;
+        Ok(singles_of_chunk(first_bin, ends, keys))
+    };
+    let chunks: Result<Vec<_>, Cancelled> = bins.into_par_iter().map(singles).collect();
+    Ok(chunks?.concat())
 }
 
 /// Consecutive bins: the first one's number, the ends of all, their keys.

@@ -28,7 +28,7 @@
 //!
 //! let whole = tetrahedralize(points, &Task::default())?;
 //! assert_eq!(whole.volume_mm3(points), 0.25);
-//! assert_eq!(whole.boundary().len(), 12);
+//! assert_eq!(whole.boundary(&Task::default())?.len(), 12);
 //!
 //! let none = alpha_complex(points, 0.6, &Task::default())?;
 //! assert!(none.cells.is_empty()); // the sphere's radius is 0.612 mm

@@ -169,15 +169,23 @@ fn the_boundary_is_outward_and_takes_any_indices() {
         cells: vec![[0, 1, 2, 3]],
     };
     assert_eq!(
-        cell.boundary(),
+        cell.boundary(&Task::default()).unwrap(),
         [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
     );
     let sparse = Tetrahedra {
         cells: vec![[7, u32::MAX - 1, 1 << 31, u32::MAX]],
     };
-    assert_eq!(sparse.boundary().len(), 4);
-    assert_eq!(sparse.boundary()[3], [1 << 31, u32::MAX, u32::MAX - 1]);
-    assert!(Tetrahedra::default().boundary().is_empty());
+    assert_eq!(sparse.boundary(&Task::default()).unwrap().len(), 4);
+    assert_eq!(
+        sparse.boundary(&Task::default()).unwrap()[3],
+        [1 << 31, u32::MAX, u32::MAX - 1]
+    );
+    assert!(
+        Tetrahedra::default()
+            .boundary(&Task::default())
+            .unwrap()
+            .is_empty()
+    );
 }
 
 #[test]
@@ -192,5 +200,5 @@ fn the_circumradius_may_equal_alpha() {
     assert_eq!(whole, oracle.tetrahedra().unwrap());
     assert!((whole.volume_mm3(oracle.lattice()) - 1.0).abs() < 1e-15);
     let none = alpha_complex(oracle.lattice(), radius * (1.0 - 1e-12), &Task::default()).unwrap();
-    assert!(none.cells.is_empty() && none.boundary().is_empty());
+    assert!(none.cells.is_empty() && none.boundary(&Task::default()).unwrap().is_empty());
 }

@@ -148,7 +148,7 @@ proptest! {
     fn the_boundary_of_any_alpha_complex_is_closed(points in nasty(), alpha in 0.5..6.0f64) {
         let oracle = Oracle { points: &points, gram: SLICES };
         if let Ok(cells) = alpha_complex(oracle.lattice(), alpha, &Task::default()) {
-            let boundary = cells.boundary();
+            let boundary = cells.boundary(&Task::default()).unwrap();
             let mut balance = std::collections::HashMap::new();
             for [a, b, c] in &boundary {
                 for (u, v) in [(a, b), (b, c), (c, a)] {
@@ -236,7 +236,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
             let pool = pool(std::num::NonZeroUsize::new(n)).unwrap();
             pool.install(|| {
                 let cells = alpha_complex(lattice, 1.5, &Task::default()).unwrap();
-                let boundary = cells.boundary();
+                let boundary = cells.boundary(&Task::default()).unwrap();
                 (cells, boundary)
             })
         })
@@ -256,7 +256,7 @@ fn a_sphere_shell_has_an_outer_and_an_inner_wall() {
     };
     let cells = alpha_complex(oracle.lattice(), 2.0, &Task::default()).unwrap();
     let volume = cells.volume_mm3(oracle.lattice());
-    let boundary = cells.boundary();
+    let boundary = cells.boundary(&Task::default()).unwrap();
     let mut wall: Vec<usize> = (0..points.len()).collect();
     let mut changed = true;
     while changed {

@@ -79,7 +79,7 @@ pub fn boundary_surface(
     task.begin("surface", 3);
     let volume_mm3 = cells.volume_mm3(points(cloud));
     task.advance(1)?;
-    let mut triangles = cells.boundary();
+    let mut triangles = cells.boundary(task)?;
     task.advance(1)?;
     let frame = cloud.lattice().map(|l| &l.frame_from_lattice);
     if frame.is_some_and(|f| f.determinant() < 0.0) {

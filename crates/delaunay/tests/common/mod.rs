@@ -81,7 +81,7 @@ impl Oracle<'_> {
                 assert!(side <= 0, "point {query} is inside the sphere of {cell:?}");
             }
         }
-        let boundary = cells.boundary();
+        let boundary = cells.boundary(&Task::default()).expect("nobody cancels");
         self.assert_convex(&boundary);
         // Cells that overlapped would have more volume than their outer boundary encloses.
         let within: i128 = cells.cells.iter().map(|&c| self.orientation(c)).sum();
