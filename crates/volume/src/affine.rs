@@ -104,6 +104,10 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 #[cfg(test)]
+#[allow(
+    clippy::float_cmp,
+    reason = "the numbers are chosen so that no step rounds"
+)]
 mod tests {
     use super::*;
     use proptest::prelude::*;

@@ -138,6 +138,10 @@ impl Geometry {
 }
 
 #[cfg(test)]
+#[allow(
+    clippy::float_cmp,
+    reason = "the numbers are chosen so that no step rounds"
+)]
 mod tests {
     use super::*;
 

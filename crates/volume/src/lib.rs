@@ -145,6 +145,10 @@ impl Volume {
 }
 
 #[cfg(test)]
+#[allow(
+    clippy::float_cmp,
+    reason = "the numbers are chosen so that no step rounds"
+)]
 mod tests {
     use super::*;
 
