@@ -33,7 +33,7 @@ class Job(Generic[T]):
         self.title = title
         self.cancel_token = bonemesh.Cancel()
         self.cancel_requested = False
-        self.progress = Progress("", 0.0)
+        self.progress = Progress("starting", 0.0)
         self.on_progress: Callable[[Progress], None] | None = None
         self._work = work
         self._value: T | None = None
