@@ -34,7 +34,9 @@ class BONEMESH_OT_render_surface_mesh(BackgroundOperator, Operator):
                 cancel=job.cancel_token,
             )
             job.stop_if_cancelled()
-            mesh.save(inputs.output)
+            mesh.save(
+                inputs.output, progress=job.note_progress, cancel=job.cancel_token
+            )
             return mesh
 
         return Job("Render Surface Mesh", work)

@@ -56,7 +56,9 @@ class BONEMESH_OT_select_roi(BackgroundOperator, Operator):
                 cancel=job.cancel_token,
             )
             job.stop_if_cancelled()
-            region.save(inputs.output)
+            region.save(
+                inputs.output, progress=job.note_progress, cancel=job.cancel_token
+            )
             return region
 
         return Job("Select Region of Interest", work)

@@ -38,6 +38,33 @@ pub enum Error {
     /// The phantom.
     #[error(transparent)]
     Phantom(#[from] PhantomError),
+    /// Canny found next to nothing.
+    #[error(
+        "only {points} edge points were found at sigma {sigma}; lower sigma, or choose another threshold or crop box"
+    )]
+    FewEdges {
+        /// Edge points found.
+        points: usize,
+        /// Canny's smoothing, pixels.
+        sigma: f64,
+    },
+    /// Sampling left next to nothing.
+    #[error(
+        "sampling {percent} % of {of} points by `{sampler}` keeps only {points}; raise the percentage"
+    )]
+    FewSamples {
+        /// Points kept.
+        points: usize,
+        /// Points before.
+        of: usize,
+        /// Percentage asked for.
+        percent: f64,
+        /// Name of the sampler.
+        sampler: &'static str,
+    },
+    /// Points of one place have no neighbour distance.
+    #[error("the points lie in one place, so there is no alpha; give points in mm that differ")]
+    NoAlpha,
     /// The worker threads.
     #[error(transparent)]
     Pool(#[from] PoolError),

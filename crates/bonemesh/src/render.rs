@@ -12,10 +12,13 @@ use bonemesh_task::{Task, pool};
 use bonemesh_volume::Volume;
 
 use crate::report::{RenderReport, Seconds, check};
-use crate::{Error, Settings};
+use crate::{Error, Sampling, Settings};
 
 /// Neighbours (with the point itself) whose mean distance is the published choice of alpha.
 const ALPHA_NEIGHBOURS: usize = 100;
+
+/// Fewer points enclose no space.
+const MIN_POINTS: usize = 4;
 
 /// A mesh in patient millimetres (LPS) and what is to be said of it.
 #[derive(Clone, Debug)]
@@ -106,11 +109,14 @@ fn volume_to_cloud(
     seconds.edges = lap(&mut clock);
     let cloud = extract_points(&edges, frame, task)?;
     drop(edges);
+    if cloud.len() < MIN_POINTS {
+        return Err(Error::FewEdges {
+            points: cloud.len(),
+            sigma: settings.canny.sigma(),
+        });
+    }
     let cloud = match settings.sampling {
-        Some(s) => {
-            let kept = sample(&cloud, s.sampler, s.percent, s.seed, task)?;
-            cloud.subset(&kept)
-        }
+        Some(sampling) => sampled(&cloud, sampling, task)?,
         None => cloud,
     };
     seconds.cloud = lap(&mut clock);
@@ -128,6 +134,9 @@ fn cloud_to_mesh(
         Some(alpha_mm) => alpha_mm,
         None => mean_neighbour_distance(cloud, ALPHA_NEIGHBOURS, true, task)?,
     };
+    if settings.alpha_mm.is_none() && alpha_mm <= 0.0 {
+        return Err(Error::NoAlpha);
+    }
     seconds.neighbours = lap(&mut clock);
     let cells = alpha_tetrahedra(cloud, alpha_mm, task)?;
     seconds.tetrahedra = lap(&mut clock);
@@ -142,6 +151,24 @@ fn cloud_to_mesh(
         mesh: surface.mesh,
         report,
     })
+}
+
+fn sampled(cloud: &PointCloud, sampling: Sampling, task: &Task) -> Result<PointCloud, Error> {
+    let Sampling {
+        percent,
+        sampler,
+        seed,
+    } = sampling;
+    let kept = sample(cloud, sampler, percent, seed, task)?;
+    if kept.len() < MIN_POINTS {
+        return Err(Error::FewSamples {
+            points: kept.len(),
+            of: cloud.len(),
+            percent: percent.get(),
+            sampler: sampler.name(),
+        });
+    }
+    Ok(cloud.subset(&kept))
 }
 
 /// Seconds since `clock`, which starts anew.

@@ -249,6 +249,7 @@ fn unusable_arguments_end_with_2() {
         ["--sample", "0"],
         ["--sampler", "best"],
         ["--crop", "1:2"],
+        ["--crop", "5:2,0:1,0:1"],
         ["--threads", "0"],
         ["--series", "first"],
     ] {
@@ -305,6 +306,37 @@ fn thresholds_that_leave_nothing_are_refused_with_the_range_of_the_scan() {
 }
 
 #[test]
+fn too_few_points_are_refused_with_what_made_them_few() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("bone.stl");
+    let render = |option: &str| bonemesh(&["render", text(&head()), "-o", text(&out), option]);
+    assert_refused(&render("--sample=0.0001"), "percentage");
+    assert_refused(&render("--sigma=100"), "sigma");
+    let cloud = folder.path().join("c.xyz");
+    fs::write(&cloud, "1 2 3\n".repeat(200)).unwrap();
+    let output = bonemesh(&["mesh", text(&cloud), "-o", text(&out)]);
+    assert_refused(&output, "one place");
+    assert!(!out.exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn folders_whose_names_are_no_unicode_are_reported() {
+    use std::os::unix::ffi::OsStrExt;
+    let folder = TempDir::new().unwrap();
+    let odd = folder
+        .path()
+        .join(std::ffi::OsStr::from_bytes(b"\xff\xfe head"));
+    fs::create_dir(&odd).unwrap();
+    for file in fs::read_dir(head().join("dicom")).unwrap() {
+        let file = file.unwrap();
+        fs::copy(file.path(), odd.join(file.file_name())).unwrap();
+    }
+    let report = json(&bonemesh(&["info", text(folder.path()), "--json"]));
+    assert_eq!(report["series"][0]["slices"], 73);
+}
+
+#[test]
 fn clouds_that_enclose_no_space_are_refused() {
     let folder = TempDir::new().unwrap();
     let (cloud, out) = (folder.path().join("c.xyz"), folder.path().join("m.stl"));
@@ -329,8 +361,10 @@ fn outputs_that_cannot_be_written_are_refused_before_the_work() {
     let at = |name: &str| folder.path().join(name);
     let render = |out: &Path| bonemesh(&["render", text(&head()), "-o", text(out)]);
     assert_refused(&render(&at("none/bone.stl")), "none");
-    assert_refused(&render(&at("bone.docx")), "bone.docx");
-    assert_refused(&render(folder.path()), "");
+    assert_eq!(render(&at("bone.docx")).status.code(), Some(2));
+    fs::create_dir(at("folder.stl")).unwrap();
+    assert_refused(&render(&at("folder.stl")), "folder.stl");
+    fs::remove_dir(at("folder.stl")).unwrap();
     fs::write(at("kept.stl"), "mine").unwrap();
     let mut permissions = fs::metadata(at("kept.stl")).unwrap().permissions();
     permissions.set_readonly(true);

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use bonemesh_task::Task;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::error::{DicomError, FileError};
 use crate::group::{Stack, stacks};
@@ -29,9 +29,20 @@ pub struct Scan {
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct LeftOut {
     /// The file or folder.
+    #[serde(serialize_with = "as_text")]
     pub path: PathBuf,
     /// Why it was left out.
     pub reason: String,
+}
+
+/// A path as text, its unreadable bytes replaced: serde refuses paths that are no Unicode.
+fn as_text<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(&path.to_string_lossy())
+}
+
+/// Paths as texts, see [`as_text`].
+pub(crate) fn as_texts<S: Serializer>(paths: &[PathBuf], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(paths.iter().map(|p| p.to_string_lossy()))
 }
 
 impl LeftOut {

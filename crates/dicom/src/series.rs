@@ -54,6 +54,7 @@ pub struct Series {
     /// What a user should know: missing, uneven, doubled or cut-off slices, and the like.
     pub warnings: Vec<String>,
     /// The files, in the order of their slices.
+    #[serde(serialize_with = "crate::scan::as_texts")]
     pub files: Vec<PathBuf>,
     #[serde(skip)]
     pub(crate) stack: Vec<Slice>,

@@ -114,6 +114,12 @@ pub enum MeshError {
         /// What the operating system said.
         reason: String,
     },
+    /// What is there is a device, a pipe or the like: a rename would destroy it.
+    #[error("{} is no ordinary file; choose another name", path.display())]
+    NotAFile {
+        /// The file.
+        path: PathBuf,
+    },
     /// The disk has no room.
     #[error("no room on the disk for {}; free some space or choose another disk", path.display())]
     DiskFull {

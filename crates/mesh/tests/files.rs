@@ -439,3 +439,16 @@ proptest! {
         }
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_refused_and_stays() {
+    use std::os::unix::fs::FileTypeExt;
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("pipe.stl");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.unwrap().success());
+    let refused = write_mesh(&pipe, &torus(8, 8), &Task::default());
+    assert!(matches!(refused, Err(MeshError::NotAFile { .. })));
+    assert!(fs::metadata(&pipe).unwrap().file_type().is_fifo());
+}

@@ -60,7 +60,7 @@ pub enum RoiError {
     },
     /// No vertex of the mesh belongs to the region but the selected ones.
     #[error(
-        "nothing was found behind the selection for {thickness_mm} mm; set the thickness to that of the bone (what is nearer than half of it is not found) or select a flatter patch"
+        "nothing was found behind the selection for {thickness_mm} mm; set the thickness to that of the bone (what is nearer than half of it is not found) or select a flatter patch (this method finds nothing behind one that faces straight up)"
     )]
     NothingBehind {
         /// The thickness asked for.

@@ -38,6 +38,8 @@ pub fn read_selection(path: impl AsRef<Path>) -> Result<Vec<u32>, RoiError> {
             break;
         }
         let text = String::from_utf8_lossy(&bytes);
+        // Some editors begin a file with a byte-order mark.
+        let text = text.trim_start_matches('\u{feff}');
         let entry = text.split('#').next().unwrap_or_default().trim();
         let is_too_long = length as u64 == LONGEST_LINE;
         match entry.parse() {

@@ -92,11 +92,13 @@ impl FromStr for CropBox {
         let [columns, rows, slices] = parts[..] else {
             return Err(syntax());
         };
-        Ok(Self {
+        let crop = Self {
             columns: range(columns)?,
             rows: range(rows)?,
             slices: range(slices)?,
-        })
+        };
+        crop.check([usize::MAX; 3])?;
+        Ok(crop)
     }
 }
 
@@ -120,9 +122,8 @@ mod tests {
                 "{text}"
             );
         }
-        let empty: CropBox = "3:3,0:1,0:1".parse().unwrap();
         assert!(matches!(
-            empty.check([9, 9, 9]),
+            "3:3,0:1,0:1".parse::<CropBox>(),
             Err(CropError::Empty {
                 axis: "columns",
                 ..

@@ -6,11 +6,12 @@ use std::str::FromStr;
 
 use bonemesh_cloud::{Frame, Percent, Sampler};
 use bonemesh_dicom::SeriesChoice;
-use bonemesh_mesh::TriangleMesh;
+use bonemesh_mesh::{MeshFormat, TriangleMesh};
 use bonemesh_phantom::{Orientation, Phantom, PhantomError, ScanSettings};
 use bonemesh_roi::{Method as RoiMethod, ThicknessMm};
 use bonemesh_segment::{CannySettings, HuThreshold};
 use bonemesh_volume::CropBox;
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::settings::{Method, Sampling, Settings};
@@ -56,7 +57,7 @@ pub(super) struct EdgeArguments {
     #[arg(long, default_value = "350", allow_negative_numbers = true, value_parser = hu)]
     hu: HuThreshold,
     /// Canny's smoothing in pixels.
-    #[arg(long, default_value = "1.0", value_parser = canny)]
+    #[arg(long, default_value = "1.0", allow_negative_numbers = true, value_parser = canny)]
     sigma: CannySettings,
     /// Which series: its UID or its number in `bonemesh info`.
     #[arg(long)]
@@ -74,7 +75,7 @@ pub(super) struct EdgeArguments {
 #[derive(Debug, Args)]
 struct SamplingArguments {
     /// Keep this percentage of the points (above 0, at most 100).
-    #[arg(long, value_name = "PERCENT", value_parser = percent)]
+    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true, value_parser = percent)]
     sample: Option<Percent>,
     /// How the kept points are chosen: uniform, random or thesis-uniform.
     #[arg(long, default_value = "uniform", requires = "sample")]
@@ -90,7 +91,7 @@ pub(super) struct SurfaceArguments {
     #[arg(long, default_value = "alpha")]
     method: Method,
     /// Largest circumradius kept in mm [default: mean distance to 100 neighbours].
-    #[arg(long, value_name = "MM", value_parser = length_mm)]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = length_mm)]
     alpha: Option<f64>,
 }
 
@@ -99,7 +100,7 @@ pub(super) struct Render {
     /// Folder of CT files; sub-folders are searched too.
     pub(super) directory: PathBuf,
     /// Mesh file to write (.stl, .ply).
-    #[arg(short, long)]
+    #[arg(short, long, value_parser = mesh_file())]
     pub(super) output: PathBuf,
     #[command(flatten)]
     pub(super) edges: EdgeArguments,
@@ -143,7 +144,7 @@ pub(super) struct MeshArguments {
     /// Cloud file (.npy, .ply, .xyz).
     pub(super) cloud: PathBuf,
     /// Mesh file to write (.stl, .ply).
-    #[arg(short, long)]
+    #[arg(short, long, value_parser = mesh_file())]
     pub(super) output: PathBuf,
     #[command(flatten)]
     pub(super) surface: SurfaceArguments,
@@ -159,10 +160,10 @@ pub(super) struct Roi {
     #[command(flatten)]
     pub(super) selection: Selection,
     /// How deep the region reaches below the selection, in mm.
-    #[arg(long, value_name = "MM", value_parser = thickness)]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = thickness)]
     pub(super) thickness: ThicknessMm,
     /// Mesh file to write (.stl, .ply).
-    #[arg(short, long)]
+    #[arg(short, long, value_parser = mesh_file())]
     pub(super) output: PathBuf,
     /// How the region is found.
     #[arg(long, default_value = "thesis")]
@@ -318,6 +319,11 @@ impl SurfaceArguments {
     }
 }
 
+/// A path, Unicode or not, whose ending names a mesh format.
+fn mesh_file() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| MeshFormat::of(&path).map(|_| path))
+}
+
 fn hu(text: &str) -> Result<HuThreshold, String> {
     let hu = number(text)?;
     HuThreshold::new(hu).map_err(|e| e.to_string())
@@ -338,10 +344,10 @@ fn thickness(text: &str) -> Result<ThicknessMm, String> {
 
 fn length_mm(text: &str) -> Result<f64, String> {
     let mm = number(text)?;
-    if mm > 0.0 {
+    if mm > 0.0 && mm.is_finite() {
         Ok(mm)
     } else {
-        Err(format!("{mm} mm is no length; use a number above 0"))
+        Err(format!("`{text}` is no size; use a number above 0"))
     }
 }
 

@@ -18,6 +18,8 @@ use arguments::Arguments;
 
 /// Exit code for a failure that a message explains.
 const FAILED: u8 = 1;
+/// Exit code after a second Ctrl-C, as shells give it.
+const INTERRUPTED: i32 = 130;
 /// Exit code for arguments that cannot be used.
 const USAGE: u8 = 2;
 
@@ -33,8 +35,14 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     };
     let task = Task::default();
     let switch = task.cancel().clone();
-    // A second registration in one process keeps the first switch; Ctrl-C then ends the process.
-    let _ = ctrlc::set_handler(move || switch.cancel());
+    // The first signal asks the work to stop; a second one, for work that waits for a pipe or a
+    // dead disk, ends the process. Where a host has its own handler, that one stays.
+    let _ = ctrlc::set_handler(move || {
+        if switch.is_cancelled() {
+            std::process::exit(INTERRUPTED);
+        }
+        switch.cancel();
+    });
     let watcher = progress::watch(&task);
     let result = commands::run(&arguments.command, &task);
     watcher.finish();

@@ -7,7 +7,7 @@ mod xyz;
 
 use std::fs;
 use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::{CloudError, PointCloud};
 
@@ -86,6 +86,7 @@ fn write_whole(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
+    let path = &destination(path)?;
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -105,6 +106,24 @@ fn write_whole(
     Ok(())
 }
 
+/// Where the file goes, links followed; a rename would replace links, devices, pipes and
+/// write-protected files without asking.
+fn destination(path: &Path) -> io::Result<PathBuf> {
+    let Ok(existing) = fs::metadata(path) else {
+        return Ok(path.to_owned());
+    };
+    if !existing.is_file() {
+        return Err(io::Error::other("it is no ordinary file"));
+    }
+    if existing.permissions().readonly() {
+        return Err(io::Error::new(
+            io::ErrorKind::PermissionDenied,
+            "the file is write-protected",
+        ));
+    }
+    fs::canonicalize(path)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -114,6 +133,21 @@ mod tests {
 
     fn cloud(points: &[[f64; 3]]) -> PointCloud {
         PointCloud::from_points(points.to_vec()).unwrap()
+    }
+
+    #[test]
+    fn what_a_rename_would_destroy_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let one = cloud(&[[1.0, 2.0, 3.0]]);
+        fs::create_dir(at("folder.xyz")).unwrap();
+        assert!(write_cloud(&one, &at("folder.xyz")).is_err());
+        fs::write(at("kept.xyz"), "mine").unwrap();
+        let mut permissions = fs::metadata(at("kept.xyz")).unwrap().permissions();
+        permissions.set_readonly(true);
+        fs::set_permissions(at("kept.xyz"), permissions).unwrap();
+        assert!(write_cloud(&one, &at("kept.xyz")).is_err());
+        assert_eq!(fs::read(at("kept.xyz")).unwrap(), b"mine");
     }
 
     fn read_bytes(name: &str, bytes: &[u8]) -> Result<PointCloud, CloudError> {

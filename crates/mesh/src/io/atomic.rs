@@ -77,7 +77,12 @@ fn destination(path: &Path) -> Result<PathBuf, MeshError> {
     let Ok(existing) = fs::metadata(path) else {
         return Ok(path.to_path_buf());
     };
-    // A rename replaces a write-protected file without asking.
+    // A rename replaces devices, pipes and write-protected files without asking.
+    if !existing.is_file() {
+        return Err(MeshError::NotAFile {
+            path: path.to_path_buf(),
+        });
+    }
     if existing.permissions().readonly() {
         return Err(MeshError::ReadOnly {
             path: path.to_path_buf(),
