@@ -70,13 +70,7 @@ impl Scan {
             }
             Some(SeriesChoice::Uid(uid)) => self.series.iter().filter(|s| s.uid == *uid).collect(),
         };
-        let longest = candidates.iter().map(|s| s.slices_found).max().unwrap_or(0);
-        let is_plausible = |s: &&Series| {
-            longest <= MAX_LOCALIZER
-                || (s.slices_found > MAX_LOCALIZER && s.slices_found * FAR_LONGER > longest)
-        };
-        let plausible: Vec<&Series> = candidates.into_iter().filter(is_plausible).collect();
-        match (&plausible[..], choice) {
+        match (&plausible(candidates.into_iter())[..], choice) {
             ([only], _) => Ok(only),
             ([], choice) => Err(DicomError::NoSuchSeries {
                 wanted: choice.map_or_else(String::new, ToString::to_string),
@@ -87,6 +81,19 @@ impl Scan {
             }),
         }
     }
+}
+
+/// The series that could be meant: no localizers, nothing far shorter than the longest.
+pub(crate) fn plausible<'a>(
+    candidates: impl Iterator<Item = &'a Series> + Clone,
+) -> Vec<&'a Series> {
+    let slices = candidates.clone().map(|s| s.slices_found);
+    let longest = slices.max().unwrap_or(0);
+    let is_plausible = |s: &&Series| {
+        longest <= MAX_LOCALIZER
+            || (s.slices_found > MAX_LOCALIZER && s.slices_found * FAR_LONGER > longest)
+    };
+    candidates.filter(is_plausible).collect()
 }
 
 fn listed(series: &[&Series]) -> String {

@@ -12,9 +12,17 @@ pub enum DicomError {
     /// The folder does not exist.
     #[error("the folder {} does not exist; check the path", .0.display())]
     NotFound(PathBuf),
-    /// A file was given.
-    #[error("{} is a file; give the folder that holds the slices of the CT series", .0.display())]
-    NotAFolder(PathBuf),
+    /// A file was given that is no volume by itself.
+    #[error(
+        "{} is a file, no volume by itself ({reason}); give the folder that holds the slices of the CT series",
+        path.display()
+    )]
+    NotAFolder {
+        /// The file.
+        path: PathBuf,
+        /// Why it makes no volume.
+        reason: String,
+    },
     /// The folder cannot be listed.
     #[error("the folder {} cannot be read ({reason}); check its permissions", path.display())]
     Folder {

@@ -32,6 +32,15 @@ const MAX_ACQUISITION_GAP: f64 = 3.0;
 /// Gap, in typical steps, from which a stack is two: filling it would invent anatomy.
 const MAX_GAP: f64 = 10.0;
 
+/// What keeps slices of the same orientation, size and spacing apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Grouping {
+    /// Series, image type and acquisition.
+    ByUid,
+    /// Nothing: UIDs are not to be trusted.
+    WholeFolder,
+}
+
 /// Slices of one volume, ordered along their normal, and what was noticed.
 pub(crate) struct Stack {
     pub(crate) slices: Vec<Slice>,
@@ -41,9 +50,16 @@ pub(crate) struct Stack {
 }
 
 /// Groups the frames of all headers into stacks.
-pub(crate) fn stacks(headers: Vec<Header>, task: &Task) -> Result<Vec<Stack>, Cancelled> {
-    let groups = alike(headers.into_iter().map(Arc::new).collect());
-    let parts: Vec<Vec<Slice>> = groups.into_iter().flat_map(by_acquisition).collect();
+pub(crate) fn stacks(
+    headers: Vec<Header>,
+    grouping: Grouping,
+    task: &Task,
+) -> Result<Vec<Stack>, Cancelled> {
+    let groups = alike(headers.into_iter().map(Arc::new).collect(), grouping);
+    let parts: Vec<Vec<Slice>> = match grouping {
+        Grouping::ByUid => groups.into_iter().flat_map(by_acquisition).collect(),
+        Grouping::WholeFolder => groups,
+    };
     let mut stacks = Vec::new();
     for part in parts {
         stacks.extend(apart(&part, task)?.into_iter().flat_map(without_gaps));
@@ -51,15 +67,14 @@ pub(crate) fn stacks(headers: Vec<Header>, task: &Task) -> Result<Vec<Stack>, Ca
     Ok(stacks)
 }
 
-fn alike(headers: Vec<Arc<Header>>) -> Vec<Vec<Slice>> {
+fn alike(headers: Vec<Arc<Header>>, grouping: Grouping) -> Vec<Vec<Slice>> {
     let mut by_name: BTreeMap<_, Vec<(Frame, Vec<Slice>)>> = BTreeMap::new();
     for header in headers {
-        let key = (
-            header.series_uid.clone(),
-            header.image_type.clone(),
-            header.layout.rows,
-            header.layout.columns,
-        );
+        let (uid, image_type) = match grouping {
+            Grouping::ByUid => (header.series_uid.clone(), header.image_type.clone()),
+            Grouping::WholeFolder => Default::default(),
+        };
+        let key = (uid, image_type, header.layout.rows, header.layout.columns);
         let groups = by_name.entry(key).or_default();
         for (index, frame) in header.frames.iter().enumerate() {
             let at = groups

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use dicom_core::Tag;
 use dicom_dictionary_std::{tags, uids};
 
-use crate::elements::{Elements, PixelPlace, Values, numbers};
+use crate::elements::{Elements, PixelPlace, Values, numbers, text};
 use crate::error::FileError;
 use crate::file::{self, Parsed};
 use crate::vector::{cross, dot, length, scaled};
@@ -71,6 +71,8 @@ pub(crate) struct Header {
     pub(crate) instance: Option<i64>,
     pub(crate) layout: Layout,
     pub(crate) storage: Storage,
+    /// What the rescaled values are, where the file says: `HU`, `US` (unspecified) or others.
+    pub(crate) rescale_type: Option<String>,
     /// Positions had to be taken from the slice location.
     pub(crate) is_placed_by_location: bool,
     pub(crate) is_cut_off: bool,
@@ -115,6 +117,7 @@ impl Header {
             instance: whole(e, tags::INSTANCE_NUMBER),
             layout,
             storage: storage(&parsed, pixels, frames.len()),
+            rescale_type: rescale_type(e),
             is_placed_by_location,
             is_cut_off: native.is_some() && available < needed,
             frames,
@@ -144,6 +147,12 @@ fn image_type(e: &Elements) -> String {
     let text = e.text(tags::IMAGE_TYPE).unwrap_or_default();
     let parts: Vec<&str> = text.split('\\').map(str::trim).collect();
     parts.join("\\")
+}
+
+/// The rescale type of the image, or of its first frame.
+fn rescale_type(e: &Elements) -> Option<String> {
+    let mut groups = [&e.values, &e.shared].into_iter().chain(e.frames.first());
+    groups.find_map(|values| text(values, tags::RESCALE_TYPE))
 }
 
 fn layout(e: &Elements) -> Result<Layout, FileError> {

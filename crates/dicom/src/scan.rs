@@ -8,8 +8,9 @@ use bonemesh_task::Task;
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
+use crate::choice::plausible;
 use crate::error::{DicomError, FileError};
-use crate::group::{Stack, stacks};
+use crate::group::{Grouping, Stack, stacks};
 use crate::header::Header;
 use crate::series::Series;
 
@@ -19,6 +20,10 @@ const MAX_REASONS: usize = 4;
 /// The series of a folder, largest first, and the files that belong to none.
 #[derive(Clone, Debug, Serialize)]
 pub struct Scan {
+    /// Number of the series that is most likely meant: the largest.
+    pub recommended: usize,
+    /// Numbers of the others that could be meant as well, see [`Scan::choose`].
+    pub alternatives: Vec<usize>,
     /// Most slices first, then most voxels.
     pub series: Vec<Series>,
     /// Files and folders that are in no series.
@@ -57,21 +62,31 @@ impl LeftOut {
 /// Finds the CT series in a folder and its sub-folders, by content and not by name.
 ///
 /// Only headers are read, except where two slices are at the same place and their pixels decide
-/// whether one is a copy. Links to folders are not followed.
+/// whether one is a copy. Links to folders are not followed. A single file is looked at alone (a
+/// multi-frame image can be a whole series), the index `DICOMDIR` stands for its folder.
 ///
 /// # Errors
-/// [`DicomError::NotFound`], [`DicomError::NotAFolder`], [`DicomError::Folder`];
-/// [`DicomError::NoSeries`] when no two slices make a volume; [`DicomError::Cancelled`].
+/// [`DicomError::NotFound`], [`DicomError::Folder`]; [`DicomError::NoSeries`] when no two slices
+/// make a volume, [`DicomError::NotAFolder`] when a single file does not;
+/// [`DicomError::Cancelled`].
 pub fn find_series(path: &Path, task: &Task) -> Result<Scan, DicomError> {
-    let metadata = fs::metadata(path).map_err(|e| match e.kind() {
-        std::io::ErrorKind::NotFound => DicomError::NotFound(path.to_owned()),
-        _ => folder_error(path, &e),
-    })?;
-    if !metadata.is_dir() {
-        return Err(DicomError::NotAFolder(path.to_owned()));
-    }
+    find(path, Grouping::ByUid, task)
+}
+
+/// Finds series as [`find_series`] does, but takes all slices of the same orientation, size and
+/// pixel spacing for one series, whatever UIDs, acquisitions and image types they name.
+///
+/// For folders whose UIDs were broken by anonymising or copying.
+///
+/// # Errors
+/// As [`find_series`].
+pub fn find_one_series(path: &Path, task: &Task) -> Result<Scan, DicomError> {
+    find(path, Grouping::WholeFolder, task)
+}
+
+fn find(path: &Path, grouping: Grouping, task: &Task) -> Result<Scan, DicomError> {
     let mut left_out = Vec::new();
-    let files = list(path, &mut left_out, task)?;
+    let files = files(path, &mut left_out, task)?;
     task.begin("scan", files.len());
     let headers = files.par_iter().map(|file| {
         let header = Header::read(file);
@@ -91,31 +106,97 @@ pub fn find_series(path: &Path, task: &Task) -> Result<Scan, DicomError> {
                 left_out.push(LeftOut::new(file, &reason));
             }
             Ok(header) => usable.push(header),
+            Err(FileError::NotDicom) => left_out.push(LeftOut::new(file, &foreign(file))),
             Err(error) => left_out.push(LeftOut::new(file, &error)),
         }
     }
     let mut series = Vec::new();
-    for stack in stacks(usable, task)? {
+    for stack in stacks(usable, grouping, task)? {
         add(stack, &cut_off, &mut series, &mut left_out);
     }
     left_out.sort();
     if series.is_empty() {
-        return Err(DicomError::NoSeries {
-            path: path.to_owned(),
-            summary: summary(&left_out),
+        return Err(no_series(path, &left_out));
+    }
+    Ok(Scan::new(series, left_out))
+}
+
+fn no_series(path: &Path, left_out: &[LeftOut]) -> DicomError {
+    let path = path.to_owned();
+    match left_out {
+        [only] if only.path == path => DicomError::NotAFolder {
+            path,
+            reason: only.reason.clone(),
+        },
+        _ => DicomError::NoSeries {
+            path,
+            summary: summary(left_out),
+        },
+    }
+}
+
+/// The files that `path` stands for.
+fn files(
+    path: &Path,
+    left_out: &mut Vec<LeftOut>,
+    task: &Task,
+) -> Result<Vec<PathBuf>, DicomError> {
+    let metadata = fs::metadata(path).map_err(|e| match e.kind() {
+        std::io::ErrorKind::NotFound => DicomError::NotFound(path.to_owned()),
+        _ => folder_error(path, &e),
+    })?;
+    if metadata.is_dir() {
+        return list(path, left_out, task);
+    }
+    let is_index = path
+        .file_name()
+        .is_some_and(|name| name.eq_ignore_ascii_case("DICOMDIR"));
+    match path.parent() {
+        Some(folder) if is_index && folder.as_os_str().is_empty() => {
+            list(".".as_ref(), left_out, task)
+        }
+        Some(folder) if is_index => list(folder, left_out, task),
+        _ => Ok(vec![path.to_owned()]),
+    }
+}
+
+impl Scan {
+    /// Sorts and numbers the series.
+    fn new(mut series: Vec<Series>, left_out: Vec<LeftOut>) -> Self {
+        series.sort_by(|a, b| {
+            let voxels = |s: &Series| s.slices * s.rows * s.columns;
+            (b.slices_found, voxels(b))
+                .cmp(&(a.slices_found, voxels(a)))
+                .then_with(|| a.uid.cmp(&b.uid))
+                .then_with(|| a.files.cmp(&b.files))
         });
+        for (index, series) in series.iter_mut().enumerate() {
+            series.report.number = index + 1;
+        }
+        let plausible = plausible(series.iter());
+        let alternatives = plausible.iter().skip(1).map(|s| s.number).collect();
+        Self {
+            recommended: 1,
+            alternatives,
+            series,
+            left_out,
+        }
     }
-    series.sort_by(|a, b| {
-        let voxels = |s: &Series| s.slices * s.rows * s.columns;
-        (b.slices_found, voxels(b))
-            .cmp(&(a.slices_found, voxels(a)))
-            .then_with(|| a.uid.cmp(&b.uid))
-            .then_with(|| a.files.cmp(&b.files))
-    });
-    for (index, series) in series.iter_mut().enumerate() {
-        series.number = index + 1;
-    }
-    Ok(Scan { series, left_out })
+}
+
+/// What a file is that is no DICOM file, as far as its name tells.
+fn foreign(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let name = name.to_ascii_lowercase();
+    let ends = |endings: &[&str]| endings.iter().any(|e| name.ends_with(e));
+    let what = if ends(&[".nii", ".nii.gz", ".nrrd", ".nhdr"]) {
+        ": a volume in a file of its own; open it by its own path"
+    } else if ends(&[".zip", ".7z", ".rar", ".tar", ".tgz", ".gz", ".bz2", ".iso"]) {
+        ": an archive; unpack it first"
+    } else {
+        ""
+    };
+    format!("{}{what}", FileError::NotDicom)
 }
 
 fn folder_error(path: &Path, error: &std::io::Error) -> DicomError {
@@ -176,7 +257,7 @@ fn add(
         Ok(mut found) => {
             if let Some(names) = cut_off.get(&found.uid) {
                 let (count, first) = (names.len(), &names[0]);
-                found.warnings.push(format!(
+                found.report.warnings.push(format!(
                     "{count} {} cut off and left out, first {first}; copy the series again",
                     if count == 1 { "file is" } else { "files are" }
                 ));

@@ -1,6 +1,7 @@
-//! A series as reports show it, and as the pixels are read from it.
+//! Slices that make one volume: what is said of them, and what reading them needs.
 
 use std::collections::BTreeSet;
+use std::ops::Deref;
 use std::path::PathBuf;
 
 use bonemesh_volume::{Affine, Geometry};
@@ -10,6 +11,7 @@ use crate::error::DicomError;
 use crate::frame::is_readable;
 use crate::group::Stack;
 use crate::orientation;
+use crate::report::SeriesReport;
 use crate::slice::Slice;
 use crate::stack::{Evenness, Grid};
 use crate::vector::{difference, dot, length, scaled};
@@ -20,46 +22,23 @@ const CROOKED: f64 = 0.5;
 /// Deviation of slice locations from positions (mm) that is rounding.
 const LOCATION_MM: f64 = 0.02;
 
-/// Slices that make one volume: what is known before any pixel is decoded.
-///
-/// Nothing in it says who the patient is.
+/// Slices that make one volume: their [`SeriesReport`], and what reading them needs.
 #[derive(Clone, Debug, Serialize)]
 pub struct Series {
-    /// Number in its [`Scan`](crate::Scan), 1 is the largest.
-    pub number: usize,
-    /// Series Instance UID; several volumes of one series share it. Empty where the files have none.
-    pub uid: String,
-    /// What the scanner's operator called it.
-    pub description: String,
-    /// `CT`, or empty where the files do not say.
-    pub modality: String,
-    /// Slices of the volume, missing ones included.
-    pub slices: usize,
-    /// Slices that the files hold.
-    pub slices_found: usize,
-    /// Pixels in a column.
-    pub rows: usize,
-    /// Pixels in a row.
-    pub columns: usize,
-    /// Distance between columns, between rows, and between slices along their normal (mm).
-    pub spacing_mm: [f64; 3],
-    /// Voxel indices (column, row, slice) to patient millimetres (LPS), voxel centres.
-    pub patient_from_voxel: [[f64; 4]; 4],
-    /// Plane, tilt, and where columns, rows and slices are counted to, in words.
-    pub orientation: String,
-    /// How the files hold the pixels.
-    pub transfer_syntax: String,
-    /// Memory that the volume takes (bytes).
-    pub estimated_memory_bytes: u64,
-    /// What a user should know: missing, uneven, doubled or cut-off slices, and the like.
-    pub warnings: Vec<String>,
-    /// The files, in the order of their slices.
-    #[serde(serialize_with = "crate::scan::as_texts")]
-    pub files: Vec<PathBuf>,
+    #[serde(flatten)]
+    pub(crate) report: SeriesReport,
     #[serde(skip)]
     pub(crate) stack: Vec<Slice>,
     #[serde(skip)]
     pub(crate) grid: Grid,
+}
+
+impl Deref for Series {
+    type Target = SeriesReport;
+
+    fn deref(&self) -> &SeriesReport {
+        &self.report
+    }
 }
 
 impl Series {
@@ -68,7 +47,7 @@ impl Series {
         let Stack {
             slices,
             notes: mut warnings,
-            ..
+            copies,
         } = stack;
         let along: Vec<f64> = slices.iter().map(|s| s.along_mm).collect();
         let (grid, evenness) = Grid::new(&along);
@@ -78,20 +57,11 @@ impl Series {
         warnings.extend(observations(&slices));
         let header = &slices[0].header;
         let (rows, columns) = (header.layout.rows, header.layout.columns);
-        let voxels = (grid.count * rows * columns) as u64;
-        let bytes = if slices.iter().all(Slice::is_whole) {
-            2
-        } else {
-            4
-        };
-        let mut files: Vec<PathBuf> = slices.iter().map(|s| s.header.path.clone()).collect();
-        files.dedup();
         let affine = affine(&slices, &grid, 0);
         let geometry = Geometry::new([grid.count, rows, columns], affine)?;
+        let tilt_degrees = tilt_degrees(&geometry);
         let [x, y] = slices[0].place().orientation;
-        let step = affine.axis(2);
-        let tilt = (dot(step, geometry.slice_normal()) / length(step)).clamp(-1.0, 1.0);
-        Ok(Self {
+        let report = SeriesReport {
             number: 0,
             uid: header.series_uid.clone(),
             description: header.description.clone(),
@@ -102,16 +72,23 @@ impl Series {
             columns,
             spacing_mm: geometry.spacing_mm(),
             patient_from_voxel: affine.matrix(),
-            orientation: orientation::in_words(
-                x,
-                y,
-                geometry.slice_normal(),
-                tilt.acos().to_degrees(),
-            ),
+            orientation: orientation::in_words(x, y, geometry.slice_normal(), tilt_degrees),
+            tilt_degrees,
+            slice_positions_mm: along,
+            is_resampled: matches!(evenness, Evenness::Uneven { .. }),
+            gaps: match evenness {
+                Evenness::Missing { gaps } => gaps,
+                _ => Vec::new(),
+            },
+            duplicates: copies.iter().map(Slice::name).collect(),
             transfer_syntax: syntaxes(&slices),
-            estimated_memory_bytes: voxels * bytes,
+            estimated_memory_bytes: memory_bytes(&slices, &grid),
+            hu_range: None,
             warnings,
-            files,
+            files: files(&slices),
+        };
+        Ok(Self {
+            report,
             stack: slices,
             grid,
         })
@@ -132,24 +109,32 @@ impl Series {
             None => geometry,
         })
     }
+}
 
-    /// One line that tells this series from the others.
-    pub(crate) fn in_words(&self) -> String {
-        let description = if self.description.is_empty() {
-            "no description"
-        } else {
-            &self.description
-        };
-        let interpolated = if self.slices == self.slices_found {
-            String::new()
-        } else {
-            format!(" ({} with interpolated ones)", self.slices)
-        };
-        format!(
-            "{} = {description}, {} slices{interpolated} of {} x {}, {:.2} mm apart ({})",
-            self.number, self.slices_found, self.columns, self.rows, self.spacing_mm[2], self.uid
-        )
-    }
+/// Angle between the normal of the slices and the line along which they are stacked.
+fn tilt_degrees(geometry: &Geometry) -> f64 {
+    let step = geometry.patient_from_voxel().axis(2);
+    let cosine = dot(step, geometry.slice_normal()) / length(step);
+    let degrees = cosine.clamp(-1.0, 1.0).acos().to_degrees();
+    // The arc cosine near 1 turns rounding into angles of this size.
+    if degrees < 1e-4 { 0.0 } else { degrees }
+}
+
+/// Memory of the volume: 16-bit where all values are whole.
+fn memory_bytes(slices: &[Slice], grid: &Grid) -> u64 {
+    let layout = &slices[0].header.layout;
+    let bytes = if slices.iter().all(Slice::is_whole) {
+        2
+    } else {
+        4
+    };
+    (grid.count * layout.rows * layout.columns) as u64 * bytes
+}
+
+fn files(slices: &[Slice]) -> Vec<PathBuf> {
+    let mut files: Vec<PathBuf> = slices.iter().map(|s| s.header.path.clone()).collect();
+    files.dedup();
+    files
 }
 
 /// The affine map of a stack: in-plane axes from the orientation, the step between slices from
@@ -201,6 +186,16 @@ fn syntaxes(slices: &[Slice]) -> String {
 /// What a user should know about the slices themselves.
 fn observations(slices: &[Slice]) -> Vec<String> {
     let mut found = Vec::new();
+    let uids: BTreeSet<&str> = slices
+        .iter()
+        .map(|s| s.header.series_uid.as_str())
+        .collect();
+    if uids.len() > 1 {
+        found.push(format!(
+            "slices of {} series are taken as one, as was asked for",
+            uids.len()
+        ));
+    }
     if slices.iter().any(|s| s.header.is_placed_by_location) {
         found.push(
             "no Image Position Patient: slices are placed by Slice Location, sideways place unknown"
@@ -209,6 +204,12 @@ fn observations(slices: &[Slice]) -> Vec<String> {
     }
     if slices[0].header.modality.is_empty() {
         found.push("the files do not say that they are CT; values may not be HU".to_owned());
+    }
+    let foreign = |kind: &&String| kind.as_str() != "HU";
+    if let Some(kind) = slices[0].header.rescale_type.as_ref().filter(foreign) {
+        found.push(format!(
+            "the files give their values as `{kind}`, not as HU; choose the threshold by hand"
+        ));
     }
     let sideways = sideways_mm(slices);
     let [dx, dy] = slices[0].place().spacing;

@@ -7,6 +7,8 @@
 
 use std::fmt;
 
+use crate::report::Gap;
+
 /// Deviation, in steps, up to which slices count as even.
 const EVEN: f64 = 0.01;
 
@@ -35,10 +37,8 @@ pub(crate) enum Evenness {
     Nearly {
         off_mm: f64,
     },
-    /// Slices are missing after these places (mm along the normal).
     Missing {
-        slices: usize,
-        after_mm: Vec<f64>,
+        gaps: Vec<Gap>,
     },
     /// Distances from `low_mm` to `high_mm`, resampled to the grid's step.
     Uneven {
@@ -56,9 +56,11 @@ impl fmt::Display for Evenness {
                 f,
                 "slices lie up to {off_mm:.3} mm off even spacing; taken as even"
             ),
-            Self::Missing { slices, after_mm } => {
-                let places: Vec<String> = after_mm.iter().map(|p| format!("{p:.2}")).collect();
-                let plural = if *slices == 1 { " is" } else { "s are" };
+            Self::Missing { gaps } => {
+                let places: Vec<String> =
+                    gaps.iter().map(|g| format!("{:.2}", g.after_mm)).collect();
+                let slices: usize = gaps.iter().map(|g| g.missing).sum();
+                let plural = if slices == 1 { " is" } else { "s are" };
                 write!(
                     f,
                     "{slices} slice{plural} missing (after {} mm along the stack); filled by linear interpolation",
@@ -131,10 +133,13 @@ impl Grid {
             let evenness = if 4 * gaps > steps.len() && steps.len() > 4 {
                 uneven(even.step_mm)
             } else {
-                let after_mm = steps.iter().zip(along).filter(|(s, _)| wide(s));
+                let gap = |(step, at): (&f64, &f64)| Gap {
+                    after_mm: *at,
+                    missing: (step / even.step_mm).round() as usize - 1,
+                };
+                let gaps = steps.iter().zip(along).filter(|(s, _)| wide(s));
                 Evenness::Missing {
-                    slices: missing,
-                    after_mm: after_mm.map(|(_, at)| *at).collect(),
+                    gaps: gaps.map(gap).collect(),
                 }
             };
             (even, evenness)
@@ -228,8 +233,10 @@ mod tests {
         assert_eq!(grid.count, 8);
         assert!((grid.step_mm - 1.5).abs() < 1e-12);
         let expected = Evenness::Missing {
-            slices: 2,
-            after_mm: vec![3.0],
+            gaps: vec![Gap {
+                after_mm: 3.0,
+                missing: 2,
+            }],
         };
         assert_eq!(evenness, expected);
         let (begin, sources) = grid.sources(&along);

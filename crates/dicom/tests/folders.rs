@@ -211,7 +211,10 @@ fn unusable_folders_are_refused_in_one_line_with_the_remedy() {
         (text.path(), "1 left out: not a DICOM file"),
         (single.path(), "a volume needs at least 2"),
         (missing.as_path(), "does not exist; check the path"),
-        (a_file.as_path(), "is a file; give the folder"),
+        (
+            a_file.as_path(),
+            "is a file, no volume by itself (not a DICOM file); give the folder",
+        ),
     ] {
         let message = error(path).to_string();
         assert!(message.contains(part), "{message}");

@@ -195,7 +195,7 @@ impl FileTrouble {
         Some(match error {
             Error::Dicom(DicomError::NotFound(_))
             | Error::Mesh(MeshError::NotFound { .. } | MeshError::NoFolder { .. }) => Self::Missing,
-            Error::Dicom(DicomError::NotAFolder(_))
+            Error::Dicom(DicomError::NotAFolder { .. })
             | Error::Phantom(PhantomError::NotAFolder(_)) => Self::NoFolder,
             Error::Phantom(PhantomError::FolderInUse(_)) => Self::InUse,
             Error::Mesh(MeshError::IsFolder { .. }) => Self::IsFolder,
