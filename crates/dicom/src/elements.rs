@@ -16,13 +16,23 @@ use dicom_encoding::transfer_syntax::{DynDecoder, Endianness, TransferSyntax};
 
 use crate::error::FileError;
 
-/// Longest value that is read; the values needed are numbers, UIDs and one line of text.
-const MAX_VALUE: u64 = 64 * 1024;
+/// Longest value that is read: the values needed are numbers, UIDs and one line of text, and the
+/// longest of these, six numbers, has 101 characters.
+const MAX_VALUE: u64 = 1024;
 
-/// Deepest nesting of sequences; functional groups need 2.
+/// Most bytes of all values together: 65,535 frames with 500 bytes each, which is twice of what
+/// positions, orientations and rescales take.
+const MAX_KEPT: u64 = 32 << 20;
+
+/// Most element headers that are looked at: 65,535 frames with 128 elements each. A file can be
+/// made of empty elements only, eight bytes each.
+const MAX_ELEMENTS: u64 = 1 << 23;
+
+/// Deepest nesting of sequences; functional groups need 2, real files have been seen with 6.
 const MAX_DEPTH: usize = 24;
 
-/// Most items of one functional group sequence: frames of a multi-frame image.
+/// Most items of one functional group sequence, the frames of a multi-frame image: a volume has
+/// no more slices.
 const MAX_FRAMES: usize = 65_535;
 
 const ITEM: Tag = Tag(0xfffe, 0xe000);
@@ -30,7 +40,7 @@ const ITEM_END: Tag = Tag(0xfffe, 0xe00d);
 const SEQUENCE_END: Tag = Tag(0xfffe, 0xe0dd);
 
 /// Elements of the data set itself that are kept.
-const WANTED: [Tag; 27] = [
+const WANTED: [Tag; 28] = [
     tags::MEDIA_STORAGE_SOP_CLASS_UID,
     tags::TRANSFER_SYNTAX_UID,
     tags::SPECIFIC_CHARACTER_SET,
@@ -58,15 +68,17 @@ const WANTED: [Tag; 27] = [
     tags::PIXEL_PADDING_RANGE_LIMIT,
     tags::RESCALE_INTERCEPT,
     tags::RESCALE_SLOPE,
+    tags::RESCALE_TYPE,
 ];
 
 /// Elements inside functional groups that are kept; each occurs in one macro only.
-const WANTED_IN_GROUPS: [Tag; 5] = [
+const WANTED_IN_GROUPS: [Tag; 6] = [
     tags::IMAGE_POSITION_PATIENT,
     tags::IMAGE_ORIENTATION_PATIENT,
     tags::PIXEL_SPACING,
     tags::RESCALE_INTERCEPT,
     tags::RESCALE_SLOPE,
+    tags::RESCALE_TYPE,
 ];
 
 /// Where the pixels lie in the data set.
@@ -111,6 +123,8 @@ impl Elements {
             source,
             position,
             size,
+            elements: 0,
+            kept: 0,
             found: Self {
                 values: Values::new(),
                 shared: Values::new(),
@@ -187,6 +201,10 @@ struct Walk<'s, S: Read + Seek> {
     source: &'s mut S,
     position: u64,
     size: u64,
+    /// Element headers seen so far.
+    elements: u64,
+    /// Bytes of values kept so far.
+    kept: u64,
     found: Elements,
 }
 
@@ -256,6 +274,13 @@ impl<S: Read + Seek> Walk<'_, S> {
             .decode_header(self.source)
             .map_err(|_| FileError::Header("ends within an element"))?;
         self.position += bytes as u64;
+        self.elements += 1;
+        if self.elements > MAX_ELEMENTS {
+            return Err(FileError::Header("far too many elements"));
+        }
+        if header.tag.group() == 0 {
+            return Err(FileError::Header("an element that no file has"));
+        }
         let length = header.len.get().map(u64::from);
         let element = Element {
             tag: header.tag,
@@ -286,14 +311,21 @@ impl<S: Read + Seek> Walk<'_, S> {
         Ok(())
     }
 
+    /// The value of an element; of a long description the beginning.
     fn bytes(&mut self, element: &Element) -> Result<Vec<u8>, FileError> {
         let length = element.length.unwrap_or(0);
-        if length > MAX_VALUE {
+        let read = length.min(MAX_VALUE);
+        self.kept += read;
+        if read < length && element.tag != tags::SERIES_DESCRIPTION {
             return Err(FileError::Header("a value is far too long"));
         }
-        let mut bytes = vec![0; length as usize];
+        if self.kept > MAX_KEPT {
+            return Err(FileError::Header("far too many values"));
+        }
+        let mut bytes = vec![0; read as usize];
         self.source.read_exact(&mut bytes)?;
-        self.position += length;
+        self.position += read;
+        self.skip(length - read)?;
         Ok(bytes)
     }
 

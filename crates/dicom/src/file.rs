@@ -1,7 +1,7 @@
 //! From the bytes of one file to its elements: preamble, file meta information, deflation.
 
 use std::fs::File;
-use std::io::{BufReader, Cursor, Read, Seek, SeekFrom};
+use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use dicom_dictionary_std::{tags, uids};
@@ -10,12 +10,10 @@ use dicom_transfer_syntax_registry::TransferSyntaxRegistry;
 
 use crate::elements::Elements;
 use crate::error::FileError;
+use crate::inflated::Inflated;
 
 /// Bytes fetched at once: most CT headers fit, so that a header costs one system call.
 const BUFFER: usize = 16 * 1024;
-
-/// Most bytes a deflated file may inflate to.
-const MAX_INFLATED: u64 = 1 << 30;
 
 static REGISTRY: TransferSyntaxRegistry = TransferSyntaxRegistry;
 
@@ -25,7 +23,7 @@ pub(crate) struct Parsed {
     pub(crate) syntax: &'static TransferSyntax,
     /// Where the data set begins in the file.
     pub(crate) start: u64,
-    /// Where the data set ends: the file's size, or the inflated size.
+    /// Where the data set ends: the file's size, or how far it inflates.
     pub(crate) size: u64,
 }
 
@@ -50,9 +48,11 @@ pub(crate) fn parse(path: &Path) -> Result<Parsed, FileError> {
     let mut file = BufReader::with_capacity(BUFFER, File::open(path)?);
     let (syntax, start) = beginning(&mut file, size)?;
     if let Codec::Dataset(_) = syntax.codec() {
-        let inflated = inflate(file, syntax, start)?;
-        let size = inflated.len() as u64;
-        let (elements, _) = Elements::read(&mut Cursor::new(inflated), syntax, 0, size, None)?;
+        let mut source = inflated(file, syntax, start)?;
+        let limit = source.limit();
+        let (elements, at) = Elements::read(&mut source, syntax, 0, limit, None)?;
+        let pixels = elements.pixels.and_then(|p| p.length).unwrap_or(0);
+        let size = at + source.count(pixels);
         return Ok(Parsed {
             elements,
             syntax,
@@ -69,12 +69,22 @@ pub(crate) fn parse(path: &Path) -> Result<Parsed, FileError> {
     })
 }
 
-/// The whole data set of a deflated file; `start` is where it begins.
-pub(crate) fn inflate<S: Read + Seek>(
-    mut source: S,
+/// `length` bytes from `begin` of the data set of a deflated file, which begins at `start`.
+pub(crate) fn inflated_part(
+    file: File,
     syntax: &TransferSyntax,
     start: u64,
+    begin: u64,
+    length: u64,
 ) -> Result<Vec<u8>, FileError> {
+    inflated(BufReader::new(file), syntax, start)?.part(begin, length)
+}
+
+fn inflated(
+    mut file: BufReader<File>,
+    syntax: &TransferSyntax,
+    start: u64,
+) -> Result<Inflated, FileError> {
     let Codec::Dataset(Some(adapter)) = syntax.codec() else {
         return Err(FileError::Codec(format!(
             "{} ({})",
@@ -82,15 +92,12 @@ pub(crate) fn inflate<S: Read + Seek>(
             syntax.uid()
         )));
     };
-    source.seek(SeekFrom::Start(start))?;
-    let source: Box<dyn Read + '_> = Box::new(source);
-    let mut inflated = Vec::new();
-    adapter
-        .adapt_reader(source)
-        .take(MAX_INFLATED)
-        .read_to_end(&mut inflated)
-        .map_err(|_| FileError::Header("the deflated data are damaged"))?;
-    Ok(inflated)
+    let deflated = file.seek(SeekFrom::End(0))?.saturating_sub(start);
+    file.seek(SeekFrom::Start(start))?;
+    Ok(Inflated::new(
+        adapter.adapt_reader(Box::new(file)),
+        deflated,
+    ))
 }
 
 /// Finds the transfer syntax and the place where the data set begins, and goes there.

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 use std::fs::File;
-use std::io::{BufReader, Cursor, Read, Seek, SeekFrom};
+use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use dicom_encoding::transfer_syntax::{Codec, Endianness, TransferSyntax};
 
 use crate::codestream::declared;
 use crate::error::FileError;
-use crate::file::{inflate, syntax};
+use crate::file::{inflated_part, syntax};
 use crate::header::{Layout, Storage};
 use crate::jpeg_ls;
 
@@ -48,9 +48,10 @@ pub(crate) fn read_frame(
     let syntax = syntax(storage.syntax_uid)?;
     let mut file = File::open(path)?;
     match syntax.codec() {
-        Codec::Dataset(_) => {
-            let bytes = inflate(file, syntax, storage.start)?;
-            native(&mut Cursor::new(bytes), syntax, storage, layout, index)
+        Codec::Dataset(_) if storage.pixels.length.is_some() => {
+            let length = layout.frame_bytes();
+            let begin = storage.pixels.offset + length * index as u64;
+            inflated_part(file, syntax, storage.start, begin, length)
         }
         Codec::EncapsulatedPixelData(..) if storage.pixels.length.is_none() => {
             let mut file = BufReader::new(file);

@@ -45,6 +45,7 @@ mod group;
 mod header;
 mod hounsfield;
 mod inflated;
+mod inflated;
 mod jpeg_ls;
 mod orientation;
 mod read;
