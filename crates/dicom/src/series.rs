@@ -10,11 +10,10 @@ use serde::Serialize;
 use crate::error::DicomError;
 use crate::frame::is_readable;
 use crate::group::Stack;
-use crate::orientation;
 use crate::report::SeriesReport;
 use crate::slice::Slice;
 use crate::stack::{Evenness, Grid};
-use crate::vector::{difference, dot, length, scaled};
+use crate::vector::{difference, length, scaled};
 
 /// Sideways deviation from a straight stack, in pixels, that is reported.
 const CROOKED: f64 = 0.5;
@@ -59,8 +58,6 @@ impl Series {
         let (rows, columns) = (header.layout.rows, header.layout.columns);
         let affine = affine(&slices, &grid, 0);
         let geometry = Geometry::new([grid.count, rows, columns], affine)?;
-        let tilt_degrees = tilt_degrees(&geometry);
-        let [x, y] = slices[0].place().orientation;
         let report = SeriesReport {
             number: 0,
             uid: header.series_uid.clone(),
@@ -72,8 +69,8 @@ impl Series {
             columns,
             spacing_mm: geometry.spacing_mm(),
             patient_from_voxel: affine.matrix(),
-            orientation: orientation::in_words(x, y, geometry.slice_normal(), tilt_degrees),
-            tilt_degrees,
+            orientation: geometry.orientation_in_words(),
+            tilt_degrees: geometry.tilt_degrees(),
             slice_positions_mm: along,
             is_resampled: matches!(evenness, Evenness::Uneven { .. }),
             gaps: match evenness {
@@ -109,15 +106,6 @@ impl Series {
             None => geometry,
         })
     }
-}
-
-/// Angle between the normal of the slices and the line along which they are stacked.
-fn tilt_degrees(geometry: &Geometry) -> f64 {
-    let step = geometry.patient_from_voxel().axis(2);
-    let cosine = dot(step, geometry.slice_normal()) / length(step);
-    let degrees = cosine.clamp(-1.0, 1.0).acos().to_degrees();
-    // The arc cosine near 1 turns rounding into angles of this size.
-    if degrees < 1e-4 { 0.0 } else { degrees }
 }
 
 /// Memory of the volume: 16-bit where all values are whole.

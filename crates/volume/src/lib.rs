@@ -4,6 +4,9 @@
 //! from voxel indices `(column, row, slice)`, which count voxel *centres*, to the patient frame
 //! (DICOM LPS: x to the left, y to the back, z to the head; millimetres).
 //!
+//! [`Volume::in_patient_order`] turns and flips the axes so that work done slice by slice does not
+//! depend on how the voxels were stored.
+//!
 //! Limits: slices are parallel and evenly spaced; readers resample what is not. Shear (gantry
 //! tilt), oblique planes, unequal spacings and left-handed index orders are all ordinary affines.
 //!
@@ -21,6 +24,8 @@
 mod affine;
 mod crop;
 mod geometry;
+mod order;
+mod orientation;
 
 pub use affine::Affine;
 pub use crop::{CropBox, CropError};
