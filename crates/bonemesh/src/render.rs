@@ -1,10 +1,10 @@
 //! The main line: folder to mesh, one step after the other, each timed.
 
+use std::borrow::Cow;
 use std::path::Path;
 use std::time::Instant;
 
 use bonemesh_cloud::{Frame, PointCloud, extract_points, mean_neighbour_distance, sample};
-use bonemesh_dicom::{find_series, read_series};
 use bonemesh_mesh::TriangleMesh;
 use bonemesh_segment::{detect_edges, threshold};
 use bonemesh_surface::{alpha_tetrahedra, boundary_surface};
@@ -12,6 +12,7 @@ use bonemesh_task::{Task, pool};
 use bonemesh_volume::Volume;
 
 use crate::report::{RenderReport, Seconds, check};
+use crate::source::{Reading, Source};
 use crate::{Error, Sampling, Settings};
 
 /// Neighbours (with the point itself) whose mean distance is the published choice of alpha.
@@ -29,21 +30,20 @@ pub struct Rendered {
     pub report: RenderReport,
 }
 
-/// Reads the series in `folder` and makes the surface of its bone.
+/// Reads the series in the folder or file `path` and makes the surface of its bone.
 ///
 /// # Errors
 /// Any [`Error`]; nothing is written.
-pub fn render(folder: &Path, settings: &Settings, task: &Task) -> Result<Rendered, Error> {
+pub fn render(path: &Path, settings: &Settings, task: &Task) -> Result<Rendered, Error> {
     pool(settings.threads)?.install(|| {
         let clock = Instant::now();
-        let scan = find_series(folder, task)?;
-        let series = scan.choose(settings.series.as_ref())?;
-        let (volume, warnings) = read_series(series, task)?;
+        let source = Source::open(path, settings.one_series, task)?;
+        let Reading { volume, series } = source.read(settings.series.as_ref(), task)?;
         let read_s = clock.elapsed().as_secs_f64();
         let mut rendered = volume_to_mesh(&volume, settings, task)?;
         let report = &mut rendered.report;
-        report.series_uid = Some(series.uid.clone());
-        report.warnings = warnings;
+        report.series_uid = Some(series.uid);
+        report.warnings = series.warnings;
         report.seconds.read = read_s;
         report.seconds.total += read_s;
         Ok(rendered)
@@ -102,7 +102,14 @@ fn volume_to_cloud(
         .as_ref()
         .map(|crop| volume.cropped(crop))
         .transpose()?;
-    let mask = threshold(cropped.as_ref().unwrap_or(volume), settings.threshold, task)?;
+    let volume = cropped.as_ref().unwrap_or(volume);
+    // Edges are found slice by slice: how the voxels were stored must not show in the patient.
+    let volume = match frame {
+        Frame::Patient => volume.in_patient_order(task)?,
+        Frame::Image => Cow::Borrowed(volume),
+    };
+    let mask = threshold(&volume, settings.threshold, task)?;
+    drop(volume);
     drop(cropped);
     let edges = detect_edges(&mask, settings.canny, task)?;
     drop(mask);
