@@ -15,7 +15,7 @@ use bonemesh_task::Task;
 use bonemesh_volume::Volume;
 use rayon::prelude::*;
 
-use crate::PhantomError;
+use crate::{PatientPosition, PhantomError};
 use attributes::Series;
 
 /// The words in a series' header; the defaults say that nobody's body is shown.
@@ -31,8 +31,8 @@ pub struct SeriesLabels {
     pub series_description: String,
     /// `SeriesNumber`.
     pub series_number: u32,
-    /// Whether `PatientPosition` is feet first (`FFS`) instead of head first (`HFS`).
-    pub feet_first: bool,
+    /// How the patient lies on the table.
+    pub patient_position: PatientPosition,
 }
 
 impl Default for SeriesLabels {
@@ -43,7 +43,7 @@ impl Default for SeriesLabels {
             study_description: "Artificial body".to_owned(),
             series_description: "Phantom".to_owned(),
             series_number: 1,
-            feet_first: false,
+            patient_position: PatientPosition::default(),
         }
     }
 }

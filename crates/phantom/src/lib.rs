@@ -4,7 +4,7 @@
 //! one of the binary models of Rier's thesis, drawn in pixels, or a [`Body`] that gives the
 //! signed distance of any point to its bone surface. [`scan`] turns it into Hounsfield units
 //! with partial volume, the scanner's blur and seeded noise, on any grid: axial, sagittal,
-//! coronal, oblique, tilted, reversed. [`write_phantom`] adds a DICOM series and a JSON file
+//! coronal, oblique, tilted, reversed, prone, on the side. [`write_phantom`] adds a DICOM series and a JSON file
 //! with the truth.
 //!
 //! A scan is the same to the last bit for any number of threads.
@@ -51,7 +51,7 @@ pub use catalog::Phantom;
 pub use dicom::{SeriesLabels, write_dicom_series};
 pub use error::PhantomError;
 pub use models::model_images;
-pub use orientation::{ORIENTATIONS, Orientation};
+pub use orientation::{ORIENTATIONS, Orientation, PatientPosition};
 pub use scan::scan;
 pub use settings::ScanSettings;
 pub use truth::{WrittenPhantom, truth, write_phantom};

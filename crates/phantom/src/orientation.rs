@@ -18,16 +18,53 @@ pub struct Orientation {
     pub row_direction: [f64; 3],
     /// Where the slice index grows.
     pub slice_direction: [f64; 3],
-    /// Whether the patient lies with the feet to the scanner; written as `PatientPosition`.
-    pub feet_first: bool,
+    /// How the patient lies on the table.
+    pub patient_position: PatientPosition,
+}
+
+/// How the patient lies on the scanner's table; written as DICOM's `PatientPosition`.
+///
+/// It says which side the table was on, nothing more: directions are the patient's in any case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
+pub enum PatientPosition {
+    /// Head first, on the back.
+    #[default]
+    HeadFirstSupine,
+    /// Head first, on the belly.
+    HeadFirstProne,
+    /// Head first, on the left side.
+    HeadFirstDecubitusLeft,
+    /// Head first, on the right side.
+    HeadFirstDecubitusRight,
+    /// Feet first, on the back.
+    FeetFirstSupine,
+}
+
+impl PatientPosition {
+    /// The defined term of DICOM PS3.3 C.7.3.1.1.2.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::HeadFirstSupine => "HFS",
+            Self::HeadFirstProne => "HFP",
+            Self::HeadFirstDecubitusLeft => "HFDL",
+            Self::HeadFirstDecubitusRight => "HFDR",
+            Self::FeetFirstSupine => "FFS",
+        }
+    }
 }
 
 const X: Vec3 = [1.0, 0.0, 0.0];
 const Y: Vec3 = [0.0, 1.0, 0.0];
 const Z: Vec3 = [0.0, 0.0, 1.0];
 
+fn opposite(direction: Vec3) -> Vec3 {
+    // 0 minus 0 is 0, its negative is not: the axes stay free of -0.
+    direction.map(|v| 0.0 - v)
+}
+
 /// Orientations by name, with one line each.
-pub const ORIENTATIONS: [(&str, &str); 7] = [
+pub const ORIENTATIONS: [(&str, &str); 10] = [
     ("axial", "feet to head, as most scanners write it"),
     ("reversed", "axial, but head to feet (a left-handed grid)"),
     ("sagittal", "slices from the patient's left to the right"),
@@ -44,6 +81,18 @@ pub const ORIENTATIONS: [(&str, &str); 7] = [
         "feet-first",
         "feet first, columns from the patient's left to the right",
     ),
+    (
+        "prone",
+        "axial, the patient on the belly: rows run from back to front",
+    ),
+    (
+        "decubitus-left",
+        "axial, the patient on the left side: rows run from right to left",
+    ),
+    (
+        "decubitus-right",
+        "axial, the patient on the right side: rows run from left to right",
+    ),
 ];
 
 impl Orientation {
@@ -54,18 +103,35 @@ impl Orientation {
 
     /// Sagittal slices from left to right: columns run to the back, rows down.
     pub fn sagittal() -> Self {
-        Self::of(Y, Z.map(|v| -v), X.map(|v| -v))
+        Self::of(Y, opposite(Z), opposite(X))
     }
 
     /// Coronal slices from front to back: columns run to the left, rows down.
     pub fn coronal() -> Self {
-        Self::of(X, Z.map(|v| -v), Y)
+        Self::of(X, opposite(Z), Y)
+    }
+
+    /// Axial slices of a patient who lies in `position`: rows run down to the table, and the
+    /// slices, seen from the feet, to the head.
+    pub fn lying(position: PatientPosition) -> Self {
+        let (columns, rows) = match position {
+            PatientPosition::HeadFirstSupine => (X, Y),
+            PatientPosition::HeadFirstProne => (opposite(X), opposite(Y)),
+            PatientPosition::HeadFirstDecubitusLeft => (opposite(Y), X),
+            PatientPosition::HeadFirstDecubitusRight => (Y, opposite(X)),
+            // The scanner is looked into from its other end.
+            PatientPosition::FeetFirstSupine => (opposite(X), Y),
+        };
+        Self {
+            patient_position: position,
+            ..Self::of(columns, rows, Z)
+        }
     }
 
     /// The same grid, its slices counted from the other end.
     #[must_use]
     pub fn reversed(self) -> Self {
-        let slice_direction = self.slice_direction.map(|v| -v);
+        let slice_direction = opposite(self.slice_direction);
         Self {
             slice_direction,
             ..self
@@ -100,7 +166,7 @@ impl Orientation {
             column_direction,
             row_direction,
             slice_direction,
-            feet_first: false,
+            patient_position: PatientPosition::default(),
         }
     }
 
@@ -150,11 +216,10 @@ impl FromStr for Orientation {
             "coronal" => Self::coronal(),
             "oblique" => axial.rotated([0.48, 0.64, 0.6], 20.0),
             "tilted" => axial.tilted(15.0),
-            "feet-first" => Self {
-                column_direction: X.map(|v| -v),
-                feet_first: true,
-                ..axial
-            },
+            "feet-first" => Self::lying(PatientPosition::FeetFirstSupine),
+            "prone" => Self::lying(PatientPosition::HeadFirstProne),
+            "decubitus-left" => Self::lying(PatientPosition::HeadFirstDecubitusLeft),
+            "decubitus-right" => Self::lying(PatientPosition::HeadFirstDecubitusRight),
             _ => {
                 return Err(PhantomError::UnknownOrientation {
                     name: name.to_owned(),
@@ -171,5 +236,37 @@ impl fmt::Display for Orientation {
             .iter()
             .find(|(name, _)| name.parse().is_ok_and(|o: Self| o == *self));
         f.write_str(named.map_or("of its own", |(name, _)| name))
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::float_cmp, reason = "directions are whole numbers")]
+mod tests {
+    use super::*;
+    use crate::vector::cross;
+
+    #[test]
+    fn rows_run_down_to_the_table_and_images_are_seen_from_the_feet() {
+        for (name, code, down) in [
+            ("axial", "HFS", Y),
+            ("prone", "HFP", opposite(Y)),
+            ("decubitus-left", "HFDL", X),
+            ("decubitus-right", "HFDR", opposite(X)),
+        ] {
+            let lying: Orientation = name.parse().unwrap();
+            assert_eq!(lying.patient_position.code(), code);
+            assert_eq!(lying.row_direction, down, "{name}");
+            let normal = cross(lying.column_direction, lying.row_direction);
+            assert_eq!(normal, Z, "{name}");
+        }
+    }
+
+    #[test]
+    fn every_named_orientation_is_found_and_says_its_name() {
+        for (name, _) in ORIENTATIONS {
+            let found: Orientation = name.parse().unwrap();
+            found.check().unwrap();
+            assert_eq!(found.to_string(), name);
+        }
     }
 }

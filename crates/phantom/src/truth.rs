@@ -40,7 +40,7 @@ pub fn write_phantom(
     let labels = SeriesLabels {
         patient_name: format!("Phantom^{}", capitalised(phantom.name())),
         series_description: format!("Phantom {phantom}"),
-        feet_first: settings.orientation.feet_first,
+        patient_position: settings.orientation.patient_position,
         ..SeriesLabels::default()
     };
     let files = write_dicom_series(&volume, &fresh.join("dicom"), &labels, task)?;
@@ -101,7 +101,7 @@ fn scan_facts(settings: &ScanSettings, geometry: &bonemesh_volume::Geometry) -> 
         "pixel_mm": settings.pixel_mm,
         "slice_mm": settings.slice_mm,
         "orientation": settings.orientation.to_string(),
-        "feet_first": settings.orientation.feet_first,
+        "patient_position": settings.orientation.patient_position.code(),
         "psf_px": settings.psf_px,
         "noise_hu": settings.noise_hu,
         "seed": settings.seed,

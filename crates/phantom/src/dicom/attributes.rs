@@ -95,7 +95,7 @@ impl<'a> Series<'a> {
         text(data, tags::SERIES_DESCRIPTION, VR::LO, description);
         // Which of a pair of limbs it is remains open.
         text(data, tags::LATERALITY, VR::CS, "");
-        let position = if self.labels.feet_first { "FFS" } else { "HFS" };
+        let position = self.labels.patient_position.code();
         text(data, tags::PATIENT_POSITION, VR::CS, position);
         let frame = self.content.with(b"frame of reference").uid();
         text(data, tags::FRAME_OF_REFERENCE_UID, VR::UI, &frame);
