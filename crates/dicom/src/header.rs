@@ -8,6 +8,7 @@ use dicom_dictionary_std::{tags, uids};
 use crate::elements::{Elements, PixelPlace, Values, numbers, text};
 use crate::error::FileError;
 use crate::file::{self, Parsed};
+use crate::plausible;
 use crate::vector::{cross, dot, length, scaled};
 
 /// Cosine of row against column direction from which they no longer count as perpendicular.
@@ -107,6 +108,8 @@ impl Header {
         if native.is_some_and(|length| length < needed) {
             return Err(FileError::Header("fewer pixels than rows and columns say"));
         }
+        let storage = storage(&parsed, pixels, frames.len());
+        plausible::check(&layout, &storage, available)?;
         Ok(Self {
             path: path.to_owned(),
             series_uid: e.text(tags::SERIES_INSTANCE_UID).unwrap_or_default(),
@@ -116,7 +119,7 @@ impl Header {
             acquisition: whole(e, tags::ACQUISITION_NUMBER),
             instance: whole(e, tags::INSTANCE_NUMBER),
             layout,
-            storage: storage(&parsed, pixels, frames.len()),
+            storage,
             rescale_type: rescale_type(e),
             is_placed_by_location,
             is_cut_off: native.is_some() && available < needed,
