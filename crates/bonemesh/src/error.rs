@@ -9,6 +9,7 @@ use bonemesh_segment::SegmentError;
 use bonemesh_surface::SurfaceError;
 use bonemesh_task::{Cancelled, PoolError};
 use bonemesh_volume::VolumeError;
+use bonemesh_volume_file::VolumeFileError;
 
 /// Why a step failed; every message names the file or value and the remedy.
 #[non_exhaustive]
@@ -17,6 +18,9 @@ pub enum Error {
     /// Reading the CT folder.
     #[error(transparent)]
     Dicom(#[from] DicomError),
+    /// Reading a file with a whole volume.
+    #[error(transparent)]
+    VolumeFile(#[from] VolumeFileError),
     /// The volume or its crop box.
     #[error(transparent)]
     Volume(#[from] VolumeError),
@@ -80,6 +84,7 @@ impl Error {
             self,
             Self::Cancelled(_)
                 | Self::Dicom(DicomError::Cancelled(_))
+                | Self::VolumeFile(VolumeFileError::Cancelled(_))
                 | Self::Segment(SegmentError::Cancelled(_))
                 | Self::Cloud(CloudError::Cancelled(_))
                 | Self::Surface(SurfaceError::Cancelled(_))

@@ -35,18 +35,20 @@ mod region;
 mod render;
 mod report;
 mod settings;
+mod source;
 
 pub use error::Error;
 pub use region::{RegionRequest, RegionResult, select_roi};
 pub use render::{Rendered, mesh_cloud, point_cloud, render, render_volume};
 pub use report::{CheckReport, RegionReport, RenderReport, Seconds, check};
 pub use settings::{Method, Sampling, Settings};
+pub use source::{Contents, Reading, Source};
 
 pub use bonemesh_cloud::{
     CloudError, Frame, Percent, PointCloud, Sampler, mean_neighbour_distance, sample,
 };
 pub use bonemesh_delaunay::{DelaunayError, Points, Tetrahedra, tetrahedralize};
-pub use bonemesh_dicom::{DicomError, Scan, Series, SeriesChoice, find_series, read_series};
+pub use bonemesh_dicom::{DicomError, Gap, LeftOut, SeriesChoice, SeriesReport};
 pub use bonemesh_mesh::{MeshError, TriangleMesh, check_target, read_mesh, write_mesh};
 pub use bonemesh_phantom::{
     Phantom, PhantomError, ScanSettings, WrittenPhantom, model_images, scan as scan_phantom,
@@ -59,6 +61,7 @@ pub use bonemesh_segment::{
 pub use bonemesh_surface::{SurfaceError, alpha_surface};
 pub use bonemesh_task::{Cancel, Cancelled, Progress, Task, pool};
 pub use bonemesh_volume::{Affine, CropBox, CropError, Geometry, Volume, VolumeError, Voxels};
+pub use bonemesh_volume_file::VolumeFileError;
 
 /// The version of this program, written into reports and objects.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -69,6 +69,8 @@ pub struct Settings {
     pub crop: Option<CropBox>,
     /// Which series of the folder; `None` takes the only plausible one.
     pub series: Option<SeriesChoice>,
+    /// Takes all slices that fit together for one series, whatever UIDs they name.
+    pub one_series: bool,
     /// Part of the points to use; `None` uses all.
     pub sampling: Option<Sampling>,
     /// Worker threads; `None` is one per core. The result does not depend on it.
@@ -87,6 +89,7 @@ impl Default for Settings {
             alpha_mm: None,
             crop: None,
             series: None,
+            one_series: false,
             sampling: None,
             threads: None,
         }

@@ -8,6 +8,7 @@
 
 use bonemesh::{
     CloudError, DelaunayError, DicomError, Error, MeshError, RoiError, SegmentError, SurfaceError,
+    VolumeFileError,
 };
 use bonemesh_phantom::PhantomError;
 use pyo3::exceptions::{
@@ -194,6 +195,7 @@ impl FileTrouble {
     fn of(error: &Error) -> Option<Self> {
         Some(match error {
             Error::Dicom(DicomError::NotFound(_))
+            | Error::VolumeFile(VolumeFileError::NotFound(_))
             | Error::Mesh(MeshError::NotFound { .. } | MeshError::NoFolder { .. }) => Self::Missing,
             Error::Dicom(DicomError::NotAFolder { .. })
             | Error::Phantom(PhantomError::NotAFolder(_)) => Self::NoFolder,
@@ -202,6 +204,7 @@ impl FileTrouble {
             Error::Mesh(MeshError::ReadOnly { .. }) => Self::Forbidden,
             Error::Mesh(MeshError::DiskFull { .. }) => Self::DiskFull,
             Error::Dicom(DicomError::Folder { .. })
+            | Error::VolumeFile(VolumeFileError::Io { .. })
             | Error::Phantom(PhantomError::Write { .. })
             | Error::Mesh(MeshError::Unreadable { .. } | MeshError::Unwritable { .. }) => {
                 Self::Other

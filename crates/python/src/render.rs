@@ -25,6 +25,7 @@ enum Source {
 /// - `method`: "alpha", the boundary of the Delaunay tetrahedra with a circumradius up to alpha.
 /// - `sigma`: Canny's smoothing in pixels.
 /// - `series`: UID or number (1 is the largest) where a folder holds several.
+/// - `one_series`: all slices that fit together are one series, whatever UIDs they name.
 /// - `crop`: "I0:I1,J0:J1,K0:K1" or three pairs: columns, rows, slices, from 0, ends not included.
 /// - `sample_percent`, `sampler`, `seed`: use only a part of the points; None uses all.
 /// - `alpha_mm`: largest circumradius; None takes the mean distance to 100 neighbours.
@@ -35,8 +36,8 @@ enum Source {
 /// `Mesh.report` has counts, topology, volume and seconds, as `bonemesh render --json` prints them.
 #[pyfunction]
 #[pyo3(signature = (
-    path_or_volume, *, threshold_hu=350.0, method="alpha", sigma=1.0, series=None, crop=None,
-    sample_percent=None, sampler="uniform", seed=0, alpha_mm=None, threads=None, progress=None,
+    path_or_volume, *, threshold_hu=350.0, method="alpha", sigma=1.0, series=None,
+    one_series=false, crop=None, sample_percent=None, sampler="uniform", seed=0, alpha_mm=None, threads=None, progress=None,
     cancel=None
 ))]
 #[allow(clippy::too_many_arguments)] // keyword arguments, as Python has them
@@ -47,6 +48,7 @@ pub(crate) fn render(
     method: &str,
     sigma: f64,
     series: Option<Choice>,
+    one_series: bool,
     crop: Option<Crop>,
     sample_percent: Option<f64>,
     sampler: &str,
@@ -66,6 +68,7 @@ pub(crate) fn render(
         alpha_mm,
         crop: crop.map(|c| c.0),
         series: series.map(|s| s.0),
+        one_series,
         sampling: sampling(py, sample_percent, sampler, seed)?,
         threads: Threads::count(threads),
     };
@@ -88,8 +91,8 @@ impl Source {
 fn source(value: &Bound<'_, PyAny>, settings: &Settings) -> PyResult<Source> {
     let py = value.py();
     if let Ok(volume) = value.cast::<Volume>() {
-        if settings.series.is_some() {
-            let message = "series names a series of a folder; leave it out with a volume";
+        if settings.series.is_some() || settings.one_series {
+            let message = "series and one_series speak of a folder; leave them out with a volume";
             return Err(errors::argument(py, message));
         }
         return Ok(Source::Volume(volume.get().shared()));
@@ -100,7 +103,7 @@ fn source(value: &Bound<'_, PyAny>, settings: &Settings) -> PyResult<Source> {
             .name()
             .map(|n| n.to_string())
             .unwrap_or_default();
-        let remedy = "give the path of a CT folder or a bonemesh.Volume";
+        let remedy = "give the path of a CT folder or file, or a bonemesh.Volume";
         errors::argument(py, &format!("path_or_volume is {kind}; {remedy}"))
     })
 }

@@ -30,10 +30,7 @@ pub(super) struct Arguments {
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     /// List the series in a folder, what was left out, geometry and warnings.
-    Info {
-        /// Folder of CT files; sub-folders are searched too.
-        directory: PathBuf,
-    },
+    Info(Info),
     /// Make the bone's mesh from a folder of CT files.
     Render(Render),
     /// Make the point cloud of the bone's edges from a folder of CT files.
@@ -52,6 +49,18 @@ pub(super) enum Command {
 }
 
 #[derive(Debug, Args)]
+pub(super) struct Info {
+    /// Folder of CT files (sub-folders are searched too), or one NIfTI, NRRD or multi-frame file.
+    pub(super) directory: PathBuf,
+    /// Take all slices that fit together for one series, whatever UIDs they name.
+    #[arg(long)]
+    pub(super) one_series: bool,
+    /// Decode the pixels too, to say the range of the values.
+    #[arg(long)]
+    pub(super) pixels: bool,
+}
+
+#[derive(Debug, Args)]
 pub(super) struct EdgeArguments {
     /// Bone is strictly above this Hounsfield value.
     #[arg(long, default_value = "350", allow_negative_numbers = true, value_parser = hu)]
@@ -62,6 +71,9 @@ pub(super) struct EdgeArguments {
     /// Which series: its UID or its number in `bonemesh info`.
     #[arg(long)]
     series: Option<SeriesChoice>,
+    /// Take all slices that fit together for one series, whatever UIDs they name.
+    #[arg(long)]
+    one_series: bool,
     /// Part of the volume to use: columns, rows, slices, each first:end (end not included).
     #[arg(long, value_name = "I0:I1,J0:J1,K0:K1")]
     crop: Option<CropBox>,
@@ -97,7 +109,7 @@ pub(super) struct SurfaceArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct Render {
-    /// Folder of CT files; sub-folders are searched too.
+    /// Folder of CT files (sub-folders are searched too), or one NIfTI, NRRD or multi-frame file.
     pub(super) directory: PathBuf,
     /// Mesh file to write (.stl, .ply).
     #[arg(short, long, value_parser = mesh_file())]
@@ -110,7 +122,7 @@ pub(super) struct Render {
 
 #[derive(Debug, Args)]
 pub(super) struct CloudArguments {
-    /// Folder of CT files; sub-folders are searched too.
+    /// Folder of CT files (sub-folders are searched too), or one NIfTI, NRRD or multi-frame file.
     pub(super) directory: PathBuf,
     /// Cloud file to write (.npy, .ply, .xyz).
     #[arg(short, long)]
@@ -291,6 +303,7 @@ impl EdgeArguments {
             canny: self.sigma,
             crop: self.crop.clone(),
             series: self.series.clone(),
+            one_series: self.one_series,
             sampling: self.sampling.settings(),
             threads: self.threads,
             ..surface.map(SurfaceArguments::settings).unwrap_or_default()

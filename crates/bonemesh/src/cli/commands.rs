@@ -4,24 +4,26 @@ use std::path::Path;
 use std::time::Instant;
 
 use bonemesh_cloud::{read_cloud, write_cloud};
-use bonemesh_dicom::{find_series, read_series};
 use bonemesh_mesh::{read_mesh, write_mesh};
 use bonemesh_phantom::write_phantom;
 use bonemesh_roi::read_selection;
 use bonemesh_task::{Task, pool};
 use serde_json::json;
 
-use super::arguments::{CloudArguments, Command, MeshArguments, PhantomArguments, Render, Roi};
+use super::arguments::{
+    CloudArguments, Command, Info, MeshArguments, PhantomArguments, Render, Roi,
+};
 use super::output::Answer;
 use super::text;
 use crate::region::{RegionRequest, select_roi};
 use crate::render::{Rendered, mesh_cloud, point_cloud, render};
+use crate::source::{Reading, Source};
 use crate::{Error, Settings, check};
 
 /// Runs `command`; the error is the one line that the user reads.
 pub(super) fn run(command: &Command, task: &Task) -> Result<Answer, String> {
     match command {
-        Command::Info { directory } => info(directory, task),
+        Command::Info(arguments) => info(arguments, task),
         Command::Render(arguments) => run_render(arguments, task),
         Command::Cloud(arguments) => run_cloud(arguments, task),
         Command::Mesh(arguments) => run_mesh(arguments, task),
@@ -32,9 +34,16 @@ pub(super) fn run(command: &Command, task: &Task) -> Result<Answer, String> {
     .map_err(|e| e.to_string())
 }
 
-fn info(directory: &Path, task: &Task) -> Result<Answer, Error> {
-    let scan = pool(None)?.install(|| find_series(directory, task))?;
-    Ok(Answer::new(&scan, text::scanned(&scan)))
+fn info(arguments: &Info, task: &Task) -> Result<Answer, Error> {
+    let contents = pool(None)?.install(|| {
+        let source = Source::open(&arguments.directory, arguments.one_series, task)?;
+        if arguments.pixels {
+            source.decoded_contents(task)
+        } else {
+            Ok(source.contents().clone())
+        }
+    })?;
+    Ok(Answer::new(&contents, text::contents(&contents)))
 }
 
 fn run_render(arguments: &Render, task: &Task) -> Result<Answer, Error> {
@@ -66,9 +75,9 @@ fn save(rendered: Rendered, file: &Path, task: &Task) -> Result<Answer, Error> {
 fn run_cloud(arguments: &CloudArguments, task: &Task) -> Result<Answer, Error> {
     let settings = arguments.edges.settings(None);
     let workers = pool(settings.threads)?;
-    let (volume, warnings) = workers.install(|| -> Result<_, Error> {
-        let scan = find_series(&arguments.directory, task)?;
-        Ok(read_series(scan.choose(settings.series.as_ref())?, task)?)
+    let Reading { volume, series } = workers.install(|| {
+        let source = Source::open(&arguments.directory, settings.one_series, task)?;
+        source.read(settings.series.as_ref(), task)
     })?;
     let cloud = point_cloud(&volume, &settings, arguments.frame.into(), task)?;
     write_cloud(&cloud, &arguments.output)?;
@@ -77,7 +86,7 @@ fn run_cloud(arguments: &CloudArguments, task: &Task) -> Result<Answer, Error> {
     let report = json!({
         "points": points,
         "output": arguments.output.to_string_lossy(),
-        "warnings": warnings,
+        "warnings": series.warnings,
     });
     Ok(Answer::new(&report, text))
 }

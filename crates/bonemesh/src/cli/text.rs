@@ -3,46 +3,34 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use bonemesh_dicom::Scan;
-
 use crate::report::{CheckReport, RegionReport, RenderReport};
+use crate::source::Contents;
 
 /// Cubic millimetres in a cubic centimetre.
 const MM3_PER_CM3: f64 = 1000.0;
 
 /// `info`.
-pub(super) fn scanned(scan: &Scan) -> String {
+pub(super) fn contents(contents: &Contents) -> String {
     let mut text = String::new();
     let mut line = |l: String| {
         text.push_str(&l);
         text.push('\n');
     };
-    for series in &scan.series {
-        let description = if series.description.is_empty() {
-            "no description"
-        } else {
-            &series.description
+    for series in &contents.series {
+        let is_rival = contents.alternatives.contains(&series.number);
+        let choice = match series.number {
+            n if n == contents.recommended => "  (recommended)",
+            _ if is_rival => "  (could be meant as well)",
+            _ => "",
         };
-        line(format!("{}  {description}", series.number));
-        line(format!("   UID {}", series.uid));
-        let [dx, dy, dz] = series.spacing_mm;
-        line(format!(
-            "   {} {} slices of {} x {} pixels; {dx:.4} mm between columns, {dy:.4} between rows, {dz:.4} between slices",
-            series.modality, series.slices, series.columns, series.rows
-        ));
-        line(format!("   {}", series.orientation));
-        line(format!(
-            "   {}; about {} MiB in memory",
-            series.transfer_syntax,
-            series.estimated_memory_bytes.div_ceil(1 << 20)
-        ));
-        for warning in &series.warnings {
-            line(format!("   note: {warning}"));
+        line(format!("{}  {}{choice}", series.number, series.title()));
+        for of_series in series.lines() {
+            line(format!("   {of_series}"));
         }
     }
-    if !scan.left_out.is_empty() {
-        line(format!("left out: {}", scan.left_out.len()));
-        for left_out in &scan.left_out {
+    if !contents.left_out.is_empty() {
+        line(format!("left out: {}", contents.left_out.len()));
+        for left_out in &contents.left_out {
             line(format!(
                 "   {}: {}",
                 left_out.path.display(),

@@ -84,16 +84,38 @@ class Series:
     def columns(self) -> int: ...
     @property
     def spacing_mm(self) -> tuple[float, float, float]: ...
+    # (4, 4): (column, row, slice, 1) to patient millimetres.
+    @property
+    def patient_from_voxel(self) -> npt.NDArray[np.float64]: ...
     @property
     def orientation(self) -> str: ...
+    @property
+    def tilt_degrees(self) -> float: ...
+    @property
+    def slice_positions_mm(self) -> list[float]: ...
+    # Position of the slice before the gap (mm), and how many are missing.
+    @property
+    def gaps(self) -> list[tuple[float, int]]: ...
+    @property
+    def is_resampled(self) -> bool: ...
+    @property
+    def duplicates(self) -> list[str]: ...
     @property
     def transfer_syntax(self) -> str: ...
     @property
     def estimated_memory_bytes(self) -> int: ...
+    # None as long as no pixel was decoded.
+    @property
+    def hu_range(self) -> tuple[float, float] | None: ...
     @property
     def warnings(self) -> list[str]: ...
     @property
     def files(self) -> list[Path]: ...
+    # The report in words, and as `bonemesh info --json` prints it.
+    @property
+    def lines(self) -> list[str]: ...
+    @property
+    def report(self) -> dict[str, Any]: ...
 
 @final
 class LeftOut:
@@ -104,6 +126,10 @@ class LeftOut:
 
 @final
 class Scan:
+    @property
+    def recommended(self) -> int: ...
+    @property
+    def alternatives(self) -> list[int]: ...
     @property
     def series(self) -> list[Series]: ...
     @property
@@ -147,6 +173,8 @@ class Mesh:
 def scan(
     path: _Path,
     *,
+    one_series: bool = False,
+    pixels: bool = False,
     threads: SupportsIndex | None = None,
     progress: _Progress | None = None,
     cancel: Cancel | None = None,
@@ -154,6 +182,7 @@ def scan(
 def find_series(
     path: _Path,
     *,
+    one_series: bool = False,
     threads: SupportsIndex | None = None,
     progress: _Progress | None = None,
     cancel: Cancel | None = None,
@@ -162,6 +191,7 @@ def read_series(
     path: _Path,
     series: SupportsIndex | str | None = None,
     *,
+    one_series: bool = False,
     threads: SupportsIndex | None = None,
     progress: _Progress | None = None,
     cancel: Cancel | None = None,
@@ -231,6 +261,7 @@ def render(
     method: Literal["alpha"] = "alpha",
     sigma: float = 1.0,
     series: SupportsIndex | str | None = None,
+    one_series: bool = False,
     crop: _Crop | None = None,
     sample_percent: float | None = None,
     sampler: _Sampler = "uniform",
