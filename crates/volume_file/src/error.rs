@@ -69,7 +69,7 @@ pub enum VolumeFileError {
     },
     /// The file holds less than its header says.
     #[error(
-        "{} is cut off: its header claims {needed} bytes of voxels, {found} are there; copy or export the file again",
+        "{} is cut off: its header claims {needed} bytes of voxels, at most {found} are there; copy or export the file again",
         path.display()
     )]
     CutOff {

@@ -92,7 +92,6 @@ mod tests {
     fn numbers(text: &str) -> io::Result<Vec<f64>> {
         let mut bytes = Vec::new();
         // A tiny buffer, so that numbers run across its ends.
-        io::BufReader::with_capacity(3, text.as_bytes());
         Numbers::new(io::BufReader::with_capacity(3, text.as_bytes())).read_to_end(&mut bytes)?;
         Ok(bytes
             .as_chunks()
