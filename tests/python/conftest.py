@@ -77,3 +77,21 @@ def command() -> Callable[..., Answer]:
         return Answer(done.returncode, done.stdout, done.stderr)
 
     return run
+
+
+@pytest.fixture(scope="session")
+def stl(command, ct_folder, tmp_path_factory) -> Path:
+    file = tmp_path_factory.mktemp("command") / "sphere.stl"
+    assert command("render", ct_folder, "-o", file).code == 0
+    return file
+
+
+@pytest.fixture(scope="session")
+def selection(stl) -> Path:
+    """A file with the numbers of vertices on the left side of the sphere."""
+    x, y, z = bonemesh.read_mesh(stl).vertices.T
+    outer = np.hypot(np.hypot(x, y), z) > 33
+    numbers = np.flatnonzero(outer & (x > 24) & (abs(y) < 12) & (abs(z) < 10))
+    file = stl.with_name("selection.txt")
+    file.write_text("".join(f"{n}\n" for n in numbers))
+    return file
