@@ -1,0 +1,346 @@
+//! One body, stored in every order and orientation: the same bone at the same place, left on the
+//! left.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
+
+mod common;
+
+use std::collections::{HashMap, HashSet};
+use std::fs;
+use std::path::Path;
+use std::sync::{LazyLock, OnceLock};
+
+use bonemesh::{
+    Phantom, Rendered, ScanSettings, Settings, Task, TriangleMesh, Volume, Voxels, read_mesh,
+    render_volume, scan_phantom, write_mesh,
+};
+use bonemesh_dicom::{find_series, read_series};
+use bonemesh_phantom::{SeriesLabels, write_dicom_series};
+use common::distance::{Triangles, length, means, sampled};
+use common::{fit, halfway, interpolated};
+use ndarray::Array3;
+
+/// Side of the cubic voxels.
+const PIXEL_MM: f64 = 2.0;
+
+/// Columns of the grid along the patient's axes: the femur lies inside with room to spare.
+const COUNTS: [usize; 3] = [64, 60, 216];
+
+/// Orientations whose grids have the same voxel centres as the axial one.
+const PARALLEL: [&str; 7] = [
+    "reversed",
+    "feet-first",
+    "sagittal",
+    "coronal",
+    "prone",
+    "decubitus-left",
+    "decubitus-right",
+];
+
+const ALL_OTHERS: [&str; 3] = ["axial", "oblique", "tilted"];
+
+/// A femur without blur and noise, on voxels that are cubes.
+fn settings(orientation: &str) -> ScanSettings {
+    let settings = ScanSettings {
+        orientation: orientation.parse().unwrap(),
+        pixel_mm: [PIXEL_MM; 2],
+        slice_mm: PIXEL_MM,
+        ..Phantom::Femur.settings().ideal()
+    };
+    let o = &settings.orientation;
+    let directions = [o.column_direction, o.row_direction, o.slice_direction];
+    let [columns, rows, slices] = directions.map(|direction| {
+        let axis = direction.iter().position(|c| c.abs() > 0.999_999);
+        // A turned grid is larger, so that the bone stays inside.
+        axis.map_or(116, |axis| COUNTS[axis])
+    });
+    let slices = if PARALLEL.contains(&orientation) {
+        slices
+    } else {
+        COUNTS[2] + 40
+    };
+    ScanSettings {
+        columns,
+        rows,
+        slices: if orientation == "axial" {
+            COUNTS[2]
+        } else {
+            slices
+        },
+        ..settings
+    }
+}
+
+/// Writes `volume` as a series whose file names say nothing of the order.
+fn write_shuffled(volume: &Volume, folder: &Path, settings: &ScanSettings) {
+    let labels = SeriesLabels {
+        patient_position: settings.orientation.patient_position,
+        ..SeriesLabels::default()
+    };
+    let files = write_dicom_series(volume, folder, &labels, &Task::default()).unwrap();
+    for (k, file) in files.iter().enumerate() {
+        // A prime larger than any number of slices.
+        fs::rename(file, folder.join(format!("{:03}", (k + 1) * 389 % 997))).unwrap();
+    }
+}
+
+/// The volume that reading a written series gives.
+fn written_and_read(volume: &Volume, settings: &ScanSettings) -> Volume {
+    let folder = tempfile::tempdir().unwrap();
+    write_shuffled(volume, folder.path(), settings);
+    let task = Task::default();
+    let found = find_series(folder.path(), &task).unwrap();
+    let (volume, warnings) = read_series(found.choose(None).unwrap(), &task).unwrap();
+    assert!(warnings.is_empty(), "{warnings:?}");
+    volume
+}
+
+fn femur(orientation: &str) -> Volume {
+    let settings = settings(orientation);
+    let scanned = scan_phantom(Phantom::Femur, &settings, &Task::default()).unwrap();
+    written_and_read(&scanned, &settings)
+}
+
+/// Its mesh with the alpha that suits it: smaller than the marrow's canal is wide, larger than
+/// the wall is thick, so that no web across the canal comes and goes with the grid.
+fn rendered(volume: &Volume) -> Rendered {
+    let settings = Settings {
+        alpha_mm: Some(5.0),
+        ..halfway()
+    };
+    render_volume(volume, &settings, &Task::default()).unwrap()
+}
+
+/// All orientations, each scanned, written, read and rendered once.
+static FEMURS: LazyLock<HashMap<&str, OnceLock<(Volume, TriangleMesh)>>> = LazyLock::new(|| {
+    let names = PARALLEL.into_iter().chain(ALL_OTHERS);
+    names.map(|name| (name, OnceLock::new())).collect()
+});
+
+fn known(orientation: &str) -> &'static (Volume, TriangleMesh) {
+    FEMURS[orientation].get_or_init(|| {
+        let volume = femur(orientation);
+        let mesh = rendered(&volume).mesh;
+        (volume, mesh)
+    })
+}
+
+/// The triangles by the numbers of their corners on the axial grid, each from its lowest corner
+/// on, so that equal surfaces that face the same way are equal sets.
+fn on_the_axial_grid(mesh: &TriangleMesh) -> HashSet<[[i64; 3]; 3]> {
+    let back = known("axial")
+        .0
+        .geometry()
+        .patient_from_voxel()
+        .inverse()
+        .unwrap();
+    let corner = |p: [f64; 3]| {
+        back.apply(p).map(|v| {
+            assert!((v - v.round()).abs() < 1e-5, "{p:?} is no voxel's centre");
+            v.round() as i64
+        })
+    };
+    let triangles = mesh.triangles().iter();
+    triangles
+        .map(|t| {
+            let mut corners = mesh.corners_mm(*t).map(corner);
+            let first = (0..3).min_by_key(|c| corners[*c]).unwrap();
+            corners.rotate_left(first);
+            corners
+        })
+        .collect()
+}
+
+#[test]
+fn every_order_of_the_same_voxels_gives_the_same_mesh() {
+    let expected = on_the_axial_grid(&known("axial").1);
+    assert!(expected.len() > 20_000);
+    for name in PARALLEL {
+        let mesh = &known(name).1;
+        assert_eq!(mesh.triangles().len(), expected.len(), "{name}");
+        assert!(on_the_axial_grid(mesh) == expected, "{name}");
+    }
+}
+
+#[test]
+fn the_default_alpha_does_not_depend_on_the_order_either() {
+    let alpha = |volume: &Volume| {
+        let rendered = render_volume(volume, &halfway(), &Task::default()).unwrap();
+        rendered.report.alpha_mm
+    };
+    let expected = alpha(&known("axial").0);
+    for name in ["feet-first", "sagittal", "decubitus-left"] {
+        assert!((alpha(&known(name).0) - expected).abs() < 1e-9, "{name}");
+    }
+}
+
+/// Vertices of the published method are centres of voxels beside the surface, so each is off by
+/// a quarter of a pixel in the mean (a uniform error of half a pixel at most), whatever the
+/// orientation: two grids that share no voxel cannot come nearer than that. What must vanish is
+/// everything systematic: the shift of the whole, and the mean with its sign.
+#[test]
+fn other_grids_give_the_same_surface_up_to_the_size_of_their_voxels() {
+    let body = Phantom::Femur.body().unwrap();
+    let axial = &known("axial").1;
+    let reference = Triangles::new(axial, 2.0 * PIXEL_MM);
+    for name in ALL_OTHERS {
+        let mesh = &known(name).1;
+        let truth = fit(mesh, body.as_ref(), |_| true);
+        let to = |other: &Triangles, mesh: &TriangleMesh| {
+            let places = sampled(mesh, 3).into_iter();
+            means(places.map(|(p, area)| (other.signed_distance_mm(p), area)))
+        };
+        let there = to(&reference, mesh);
+        let back = to(&Triangles::new(mesh, 2.0 * PIXEL_MM), axial);
+        println!("{name}: to the truth {truth:?}; to the axial mesh {there:?}, back {back:?}");
+        assert!(truth.distance_mm.unsigned < 0.30 * PIXEL_MM, "{name}");
+        assert!(truth.distance_mm.signed.abs() < 0.1 * PIXEL_MM, "{name}");
+        assert!(truth.shift_mm < 0.1 * PIXEL_MM, "{name}");
+        for means in [there, back] {
+            assert!(means.unsigned < 0.25 * PIXEL_MM, "{name}: {means:?}");
+            assert!(means.signed.abs() < 0.1 * PIXEL_MM, "{name}: {means:?}");
+        }
+    }
+}
+
+#[test]
+fn left_front_and_head_stay_where_they_are() {
+    let body = Phantom::Femur.body().unwrap();
+    // Left: the greater trochanter's outer side. Right: the head's. Front, back and below: the
+    // condyles and the groove between them.
+    let landmarks = [
+        [17.0, 19.0, 190.0],
+        [-67.0, -9.0, 196.0],
+        [22.0, 40.0, -184.0],
+    ];
+    for landmark in landmarks {
+        assert!(
+            body.signed_distance_mm(landmark).abs() < 4.0,
+            "{landmark:?}"
+        );
+    }
+    // Mirrored points that the body is far from, by the axis they are mirrored along.
+    let absent: Vec<(usize, [f64; 3])> = landmarks
+        .iter()
+        .flat_map(|landmark| {
+            [0, 1, 2].map(|axis| {
+                let mut mirrored = *landmark;
+                mirrored[axis] *= -1.0;
+                (axis, mirrored)
+            })
+        })
+        .filter(|(_, p)| body.signed_distance_mm(*p) > 14.0)
+        .collect();
+    let axes: HashSet<usize> = absent.iter().map(|(axis, _)| *axis).collect();
+    assert_eq!(axes.len(), 3, "{absent:?}");
+    for name in PARALLEL.into_iter().chain(ALL_OTHERS) {
+        let surface = Triangles::new(&known(name).1, 2.0 * PIXEL_MM);
+        for landmark in landmarks {
+            let near = surface.signed_distance_mm(landmark).abs();
+            assert!(near < 8.0, "{name}: {near} mm from {landmark:?}");
+        }
+        for (_, mirrored) in &absent {
+            let far = surface.signed_distance_mm(*mirrored).abs();
+            assert!(far > 12.0, "{name}: {far} mm from {mirrored:?}");
+        }
+    }
+}
+
+#[test]
+fn triangles_face_outward_in_grids_of_either_hand() {
+    let body = Phantom::Tube.body().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let mut hands = HashSet::new();
+    for name in ["axial", "reversed", "coronal", "sagittal"] {
+        // Thick slices stay slices: coronal ones make a left-handed grid.
+        let slice_mm = 2.0;
+        let settings = ScanSettings {
+            columns: 80,
+            rows: 80,
+            slices: 40,
+            pixel_mm: [1.0; 2],
+            slice_mm,
+            orientation: name.parse().unwrap(),
+            ..Phantom::Tube.settings().ideal()
+        };
+        let volume = scan_phantom(Phantom::Tube, &settings, &Task::default()).unwrap();
+        let ordered = volume.in_patient_order(&Task::default()).unwrap();
+        let spacing = ordered.geometry().spacing_mm();
+        assert!((spacing[2] - slice_mm).abs() < 1e-9, "{name}: {spacing:?}");
+        hands.insert(ordered.geometry().patient_from_voxel().determinant() > 0.0);
+
+        let stl = folder.path().join(format!("{name}.stl"));
+        let mesh = rendered(&volume).mesh;
+        write_mesh(&stl, &mesh, &Task::default()).unwrap();
+        let mesh = read_mesh(&stl, &Task::default()).unwrap();
+        let report = bonemesh::check(&mesh, &Task::default()).unwrap();
+        assert!(
+            report.volume_mm3 > 20_000.0,
+            "{name}: {}",
+            report.volume_mm3
+        );
+        let outward = mesh.triangles().iter().filter(|t| {
+            let [a, b, c] = mesh.corners_mm(**t);
+            let (u, v) = (
+                [0, 1, 2].map(|i| b[i] - a[i]),
+                [0, 1, 2].map(|i| c[i] - a[i]),
+            );
+            let normal = [
+                u[1] * v[2] - u[2] * v[1],
+                u[2] * v[0] - u[0] * v[2],
+                u[0] * v[1] - u[1] * v[0],
+            ];
+            let off = |mm: f64| {
+                let size = length(normal).max(1e-9);
+                let p = std::array::from_fn(|i| (a[i] + b[i] + c[i]) / 3.0 + mm * normal[i] / size);
+                body.signed_distance_mm(p)
+            };
+            off(1.0) > off(-1.0)
+        });
+        let share = outward.count() as f64 / mesh.triangles().len() as f64;
+        println!("{name}: {share:.3} of the triangles face away from the bone");
+        assert!(share > 0.85, "{name}: {share}");
+    }
+    assert_eq!(hands.len(), 2);
+}
+
+/// Hounsfield units that no mirrored or shifted grid shows: 1 HU is a tenth of a millimetre.
+fn slope_hu(p: [f64; 3]) -> f64 {
+    10.0 * p[0] - 7.0 * p[1] + 4.0 * p[2]
+}
+
+#[test]
+fn every_volume_shows_the_same_hounsfield_units_at_a_point_of_the_patient() {
+    for name in PARALLEL.into_iter().chain(ALL_OTHERS) {
+        let settings = ScanSettings {
+            pixel_mm: [0.75, 1.0],
+            slice_mm: 2.5,
+            columns: 24,
+            rows: 20,
+            slices: 16,
+            centre_mm: [11.0, -23.0, 35.0],
+            ..settings(name)
+        };
+        let geometry = settings.geometry().unwrap();
+        let affine = *geometry.patient_from_voxel();
+        let hu = Array3::from_shape_fn(geometry.shape(), |(k, j, i)| {
+            slope_hu(affine.apply([i as f64, j as f64, k as f64])).round() as i16
+        });
+        let volume = Volume::new(Voxels::I16(hu), geometry).unwrap();
+        let read = written_and_read(&volume, &settings);
+        let mut inside = 0;
+        for step in 0..1000 {
+            // Points of a coarse grid about the middle, on no voxel's centre.
+            let [a, b, c] = [step % 10, step / 10 % 10, step / 100].map(|n| f64::from(n) - 4.5);
+            let p = [11.0 + 2.1 * a, -23.0 + 2.3 * b, 35.0 + 4.1 * c];
+            if let Some(value) = interpolated(&read, p) {
+                assert!(
+                    (value - slope_hu(p)).abs() < 0.6,
+                    "{name} at {p:?}: {value}"
+                );
+                inside += 1;
+            }
+        }
+        assert!(inside > 200, "{name}: {inside}");
+    }
+}
