@@ -41,10 +41,11 @@ pub(crate) fn geometry(
     })
 }
 
-/// Patient coordinates with x to the right and y to the front, turned to left and back.
+/// Patient coordinates with x to the right and y to the front, turned to left and back (a zero
+/// stays without a sign).
 pub(crate) fn lps_from_ras(mut rows: [[f64; 4]; 3]) -> [[f64; 4]; 3] {
     for row in &mut rows[..2] {
-        *row = row.map(|v| -v);
+        *row = row.map(|v| 0.0 - v);
     }
     rows
 }

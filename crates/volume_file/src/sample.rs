@@ -83,33 +83,37 @@ impl Conversion {
 
     /// Hounsfield units of `bytes`, which hold one number for each voxel, on every core.
     pub(crate) fn convert<T: Voxel>(&self, bytes: &[u8], voxels: &mut [T]) -> Summary {
-        match self.element {
-            Element::U8 => self.all(bytes, voxels, |[b]| f64::from(b)),
-            Element::I8 => self.all(bytes, voxels, |b| f64::from(i8::from_le_bytes(b))),
-            Element::U16 => self.all(bytes, voxels, |b| f64::from(u16::from_le_bytes(b))),
-            Element::I16 => self.all(bytes, voxels, |b| f64::from(i16::from_le_bytes(b))),
-            Element::U32 => self.all(bytes, voxels, |b| f64::from(u32::from_le_bytes(b))),
-            Element::I32 => self.all(bytes, voxels, |b| f64::from(i32::from_le_bytes(b))),
-            Element::U64 => self.all(bytes, voxels, |b| u64::from_le_bytes(b) as f64),
-            Element::I64 => self.all(bytes, voxels, |b| i64::from_le_bytes(b) as f64),
-            Element::F32 => self.all(bytes, voxels, |b| f64::from(f32::from_le_bytes(b))),
-            Element::F64 => self.all(bytes, voxels, f64::from_le_bytes),
+        if self.is_big_endian {
+            self.ordered::<true, T>(bytes, voxels)
+        } else {
+            self.ordered::<false, T>(bytes, voxels)
         }
     }
 
-    fn all<const N: usize, T: Voxel>(
+    fn ordered<const BIG: bool, T: Voxel>(&self, bytes: &[u8], voxels: &mut [T]) -> Summary {
+        match self.element {
+            Element::U8 => self.all::<BIG, 1, T>(bytes, voxels, |[b]| f64::from(b)),
+            Element::I8 => self.all::<BIG, 1, T>(bytes, voxels, |b| i8::from_le_bytes(b).into()),
+            Element::U16 => self.all::<BIG, 2, T>(bytes, voxels, |b| u16::from_le_bytes(b).into()),
+            Element::I16 => self.all::<BIG, 2, T>(bytes, voxels, |b| i16::from_le_bytes(b).into()),
+            Element::U32 => self.all::<BIG, 4, T>(bytes, voxels, |b| u32::from_le_bytes(b).into()),
+            Element::I32 => self.all::<BIG, 4, T>(bytes, voxels, |b| i32::from_le_bytes(b).into()),
+            Element::U64 => self.all::<BIG, 8, T>(bytes, voxels, |b| u64::from_le_bytes(b) as f64),
+            Element::I64 => self.all::<BIG, 8, T>(bytes, voxels, |b| i64::from_le_bytes(b) as f64),
+            Element::F32 => self.all::<BIG, 4, T>(bytes, voxels, |b| f32::from_le_bytes(b).into()),
+            Element::F64 => self.all::<BIG, 8, T>(bytes, voxels, f64::from_le_bytes),
+        }
+    }
+
+    /// `number` takes the bytes of one number, least first.
+    fn all<const BIG: bool, const N: usize, T: Voxel>(
         &self,
         bytes: &[u8],
         voxels: &mut [T],
         number: impl Fn([u8; N]) -> f64 + Sync,
     ) -> Summary {
         let (numbers, _) = bytes.as_chunks::<N>();
-        let Self {
-            is_big_endian,
-            slope,
-            intercept,
-            ..
-        } = *self;
+        let (slope, intercept) = (self.slope, self.intercept);
         numbers
             .par_chunks(CHUNK)
             .zip(voxels.par_chunks_mut(CHUNK))
@@ -117,15 +121,15 @@ impl Conversion {
                 let mut seen = Summary::EMPTY;
                 for (bytes, voxel) in numbers.iter().zip(voxels) {
                     let mut bytes = *bytes;
-                    if is_big_endian {
+                    if BIG {
                         bytes.reverse();
                     }
                     let mut hu = (number(bytes) * slope + intercept) as f32;
-                    if hu.is_finite() {
-                        seen.lowest_hu = seen.lowest_hu.min(hu);
-                    } else {
+                    if !hu.is_finite() {
                         seen.not_finite += 1;
                         hu = AIR_HU;
+                    } else if hu < seen.lowest_hu {
+                        seen.lowest_hu = hu;
                     }
                     let (value, fits) = T::from_hu(hu);
                     *voxel = value;
@@ -144,9 +148,14 @@ pub(crate) trait Voxel: Copy + Send + Sync {
 }
 
 impl Voxel for i16 {
+    #[allow(
+        clippy::float_cmp,
+        reason = "only the very same number is held exactly"
+    )]
     fn from_hu(hu: f32) -> (Self, bool) {
-        let fits = hu.fract() == 0.0 && (-32768.0..=32767.0).contains(&hu);
-        (hu as i16, fits)
+        // The cast saturates, so only values that are whole and in range come back unchanged.
+        let value = hu as i16;
+        (value, f32::from(value) == hu)
     }
 }
 

@@ -4,6 +4,8 @@
 
 mod common;
 
+use std::num::NonZeroUsize;
+
 use bonemesh_task::Task;
 use bonemesh_volume::Voxels;
 use bonemesh_volume_file::{VolumeFile, VolumeFileError};
@@ -118,6 +120,25 @@ fn a_volume_of_many_blocks_that_turns_to_floating_point_late_keeps_what_came_bef
         assert!(matches!(volume.voxels(), Voxels::F32(_)));
         assert!(values(&volume) == expected);
     }
+}
+
+#[test]
+fn any_number_of_threads_reads_the_same_and_progress_ends_at_one() {
+    let mut stored: Vec<f64> = (0..1_200_000).map(|n| f64::from(n % 4001) / 3.0).collect();
+    stored[700_000] = f64::NAN;
+    let mut file = Nifti::new(2).with(16, &stored);
+    (file.dim, file.slope, file.intercept) = ([3, 200, 150, 40, 1, 1, 1, 1], 1.5, -1024.0);
+    let folder = Folder::new();
+    let file = VolumeFile::open(&folder.write("volume", &gzip(&file.bytes()))).unwrap();
+    let [one, three] = [1, 3].map(|threads| {
+        let task = Task::default();
+        let pool = bonemesh_task::pool(NonZeroUsize::new(threads)).unwrap();
+        let reading = pool.install(|| file.read(&task)).unwrap();
+        assert_eq!(task.progress().stage, "read");
+        assert!(task.progress().fraction >= 1.0);
+        reading
+    });
+    assert!(one == three);
 }
 
 #[test]

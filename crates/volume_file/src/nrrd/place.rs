@@ -18,7 +18,7 @@ pub(super) struct Axis {
     pub(super) size: u64,
 }
 
-/// Where and how the file says the voxels lie.
+/// A place or a direction in the file's space.
 type Vector = [f64; 3];
 
 /// The spatial axes, columns first; a plane has two.
@@ -113,7 +113,7 @@ fn in_lps(fields: &Fields, mut rows: [[f64; 4]; 3], warnings: &mut Vec<String>) 
         "left-posterior-superior" | "lps" => rows,
         "right-anterior-superior" | "ras" => lps_from_ras(rows),
         "left-anterior-superior" | "las" => {
-            rows[1] = rows[1].map(|v| -v);
+            rows[1] = rows[1].map(|v| 0.0 - v);
             rows
         }
         _ => {
