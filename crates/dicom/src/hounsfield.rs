@@ -85,6 +85,9 @@ impl Cells {
 
 /// A voxel type that Hounsfield units are written as.
 pub(crate) trait Voxel: Copy + Default + Send + Sync + PartialEq {
+    /// Nothing but air.
+    const AIR: Self;
+
     /// Writes a frame's Hounsfield units; false if one does not fit this type.
     fn convert(bytes: &[u8], layout: &Layout, frame: &Frame, hu: &mut [Self]) -> bool;
 
@@ -93,6 +96,8 @@ pub(crate) trait Voxel: Copy + Default + Send + Sync + PartialEq {
 }
 
 impl Voxel for i16 {
+    const AIR: Self = AIR_HU;
+
     /// Only for frames that are [`is_whole`].
     fn convert(bytes: &[u8], layout: &Layout, frame: &Frame, hu: &mut [Self]) -> bool {
         let (slope, intercept) = (frame.slope as i32, frame.intercept as i32);
@@ -126,6 +131,8 @@ impl Voxel for i16 {
 }
 
 impl Voxel for f32 {
+    const AIR: Self = AIR_HU as Self;
+
     fn convert(bytes: &[u8], layout: &Layout, frame: &Frame, hu: &mut [Self]) -> bool {
         let cells = Cells::new(layout);
         let width = layout.bits_allocated as usize / 8;

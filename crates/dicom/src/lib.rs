@@ -46,6 +46,7 @@ mod header;
 mod hounsfield;
 mod inflated;
 mod jpeg_ls;
+mod line;
 mod plausible;
 mod read;
 mod report;

@@ -22,7 +22,9 @@ const BLENDS_AT_ONCE: usize = 32;
 ///
 /// Hounsfield units `[slice, row, column]`: each slice with its own rescale, 16-bit where all
 /// values are whole and fit, 32-bit floating point otherwise. Places without a slice of their
-/// own are linear between the slices around them (rounded in 16-bit volumes). A file that cannot
+/// own are linear between the slices around them (rounded in 16-bit volumes). Where slices lie
+/// beside the straight line of their stack by more than half a pixel, they are moved within their
+/// plane, linear between pixels; what comes from outside their image is air. A file that cannot
 /// be read is named in the warnings and treated as missing; its place is filled, or, at an end
 /// of the stack, the volume is shorter.
 ///
@@ -99,6 +101,7 @@ impl<T: Voxel> Read<T> {
                 slice: k,
                 result: series.stack[k].decode(hu),
             };
+            series.line.straighten(&series.stack[k], hu);
             task.advance(1)?;
             Ok(outcome)
         };

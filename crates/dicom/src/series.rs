@@ -10,13 +10,11 @@ use serde::Serialize;
 use crate::error::DicomError;
 use crate::frame::is_readable;
 use crate::group::Stack;
+use crate::line::Line;
 use crate::report::SeriesReport;
 use crate::slice::Slice;
 use crate::stack::{Evenness, Grid};
-use crate::vector::{difference, length, scaled};
-
-/// Sideways deviation from a straight stack, in pixels, that is reported.
-const CROOKED: f64 = 0.5;
+use crate::vector::scaled;
 
 /// Deviation of slice locations from positions (mm) that is rounding.
 const LOCATION_MM: f64 = 0.02;
@@ -30,6 +28,8 @@ pub struct Series {
     pub(crate) stack: Vec<Slice>,
     #[serde(skip)]
     pub(crate) grid: Grid,
+    #[serde(skip)]
+    pub(crate) line: Line,
 }
 
 impl Deref for Series {
@@ -53,10 +53,11 @@ impl Series {
         if evenness != Evenness::Even {
             warnings.push(evenness.to_string());
         }
-        warnings.extend(observations(&slices));
+        let line = Line::of(&slices);
+        warnings.extend(observations(&slices, &line));
         let header = &slices[0].header;
         let (rows, columns) = (header.layout.rows, header.layout.columns);
-        let affine = affine(&slices, &grid, 0);
+        let affine = affine(&slices, &line, &grid, 0);
         let geometry = Geometry::new([grid.count, rows, columns], affine)?;
         let report = SeriesReport {
             number: 0,
@@ -88,12 +89,13 @@ impl Series {
             report,
             stack: slices,
             grid,
+            line,
         })
     }
 
     /// The geometry of `count` slices from place `begin` of the grid.
     pub(crate) fn geometry(&self, begin: usize, count: usize) -> Result<Geometry, DicomError> {
-        let affine = affine(&self.stack, &self.grid, begin);
+        let affine = affine(&self.stack, &self.line, &self.grid, begin);
         let geometry = Geometry::new([count, self.rows, self.columns], affine)?;
         Ok(match locations(&self.stack) {
             Some(locations) => {
@@ -127,17 +129,12 @@ fn files(slices: &[Slice]) -> Vec<PathBuf> {
 
 /// The affine map of a stack: in-plane axes from the orientation, the step between slices from
 /// the positions themselves, so that a tilted gantry's shear is in it.
-fn affine(slices: &[Slice], grid: &Grid, begin: usize) -> Affine {
-    let (first, last) = (&slices[0], &slices[slices.len() - 1]);
-    let place = first.place();
+fn affine(slices: &[Slice], line: &Line, grid: &Grid, begin: usize) -> Affine {
+    let place = slices[0].place();
     let [dx, dy] = place.spacing;
     let [x, y] = place.orientation;
-    let (from, to) = (place.position, last.place().position);
-    let per_mm = scaled(difference(to, from), 1.0 / (last.along_mm - first.along_mm));
-    let axis = scaled(per_mm, grid.step_mm);
-    let offset = scaled(axis, begin as f64);
-    let origin = std::array::from_fn(|i| from[i] + offset[i]);
-    Affine::from_axes(scaled(x, dx), scaled(y, dy), axis, origin)
+    let step = scaled(line.per_mm(), grid.step_mm);
+    Affine::from_axes(scaled(x, dx), scaled(y, dy), step, line.at(grid.at(begin)))
 }
 
 /// Slice locations that run evenly along the normal, upwards or downwards.
@@ -172,7 +169,7 @@ fn syntaxes(slices: &[Slice]) -> String {
 }
 
 /// What a user should know about the slices themselves.
-fn observations(slices: &[Slice]) -> Vec<String> {
+fn observations(slices: &[Slice], line: &Line) -> Vec<String> {
     let mut found = Vec::new();
     let uids: BTreeSet<&str> = slices
         .iter()
@@ -199,11 +196,9 @@ fn observations(slices: &[Slice]) -> Vec<String> {
             "the files give their values as `{kind}`, not as HU; choose the threshold by hand"
         ));
     }
-    let sideways = sideways_mm(slices);
-    let [dx, dy] = slices[0].place().spacing;
-    if sideways > CROOKED * dx.min(dy) {
+    if let Some(crooked_mm) = line.crooked_mm(slices) {
         found.push(format!(
-            "slices are shifted sideways by up to {sideways:.2} mm against a straight stack; the shift is ignored"
+            "slices are shifted sideways by up to {crooked_mm:.2} mm against a straight stack; moved to their places by linear interpolation"
         ));
     }
     let unreadable: BTreeSet<(&str, &str)> = slices
@@ -215,19 +210,4 @@ fn observations(slices: &[Slice]) -> Vec<String> {
         found.push(format!("pixels stored as {name} ({uid}) cannot be read"));
     }
     found
-}
-
-/// Largest distance of a slice's corner from the line through the first and the last one's.
-fn sideways_mm(slices: &[Slice]) -> f64 {
-    let (first, last) = (&slices[0], &slices[slices.len() - 1]);
-    let from = first.place().position;
-    let line = scaled(
-        difference(last.place().position, from),
-        1.0 / (last.along_mm - first.along_mm),
-    );
-    let off = |s: &Slice| {
-        let expected = scaled(line, s.along_mm - first.along_mm);
-        length(difference(difference(s.place().position, from), expected))
-    };
-    slices.iter().map(off).fold(0.0, f64::max)
 }

@@ -160,6 +160,36 @@ fn slices_shifted_sideways_are_reported() {
 }
 
 #[test]
+fn slices_beside_the_line_are_moved_to_it() {
+    for crooked in [0, 2, 4] {
+        // Two columns to the left: 0.5 mm each.
+        let folder = folder(5, |k, image| {
+            image.position([
+                if k == crooked { -11.0 } else { -10.0 },
+                20.0,
+                2.0 * k as f64,
+            ])
+        });
+        let (volume, warnings) = read(folder.path());
+        assert!(warnings[0].contains("up to 1.00 mm"), "{warnings:?}");
+        assert_near(
+            volume.geometry().patient_from_voxel().origin(),
+            [-10.0, 20.0, 0.0],
+        );
+        for k in 0..5 {
+            let value = |j, i| f64::from(stored(k, j, i)) - 1024.0;
+            if k == crooked {
+                assert_eq!(hu(&volume, [k, 1, 0]), value(1, 2));
+                assert_eq!(hu(&volume, [k, 2, 1]), value(2, 3));
+                assert_eq!(hu(&volume, [k, 1, 2]), -1000.0);
+            } else {
+                assert_eq!(hu(&volume, [k, 1, 2]), value(1, 2));
+            }
+        }
+    }
+}
+
+#[test]
 fn without_positions_the_slice_location_serves_and_is_said() {
     let folder = folder(4, |k, image| {
         let image = image.without(tags::IMAGE_POSITION_PATIENT);
