@@ -13,6 +13,12 @@ use crate::text::Numbers;
 /// Bytes skipped between two looks at the task.
 const SKIP_AT_ONCE: usize = 1 << 18;
 
+/// Times that no scan can be compressed: noise alone keeps them below 50, label maps mostly below this.
+const MAX_SCAN_RATIO: u64 = 200;
+
+/// Bytes of voxels that do no harm even where nothing but zeros was compressed.
+const HARMLESS: u64 = 1 << 28;
+
 /// How the bytes of the voxels are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Encoding {
@@ -48,6 +54,16 @@ impl Data {
         let found = held.saturating_sub(self.skip);
         if found < self.bytes {
             return Err(self.cut_off(found));
+        }
+        if self.encoding == Encoding::Gzip
+            && self.bytes > HARMLESS
+            && self.bytes / MAX_SCAN_RATIO > stored
+        {
+            return Err(VolumeFileError::Inflated {
+                path: self.path.clone(),
+                needed: self.bytes,
+                stored,
+            });
         }
         Ok(())
     }

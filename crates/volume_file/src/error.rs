@@ -80,6 +80,19 @@ pub enum VolumeFileError {
         /// Bytes that are there, or that compressed data of this size can hold at most.
         found: u64,
     },
+    /// Compressed data that would grow as no scan does.
+    #[error(
+        "{} claims {needed} bytes of voxels in {stored} bytes of gzip, which no scan fits into; if it is a good file, save it uncompressed",
+        path.display()
+    )]
+    Inflated {
+        /// The file.
+        path: PathBuf,
+        /// Bytes that the header claims.
+        needed: u64,
+        /// Bytes of compressed data.
+        stored: u64,
+    },
     /// The file that a header names for its voxels.
     #[error(
         "the header {} names the data file `{data}`, {reason}; put the data file beside its header",

@@ -11,7 +11,8 @@
 //! left stays left. The map from voxels to the patient may be oblique, sheared and left-handed.
 //!
 //! A header is checked against the bytes of its file before memory is asked for: at most 1032
-//! times the compressed size, which is the most that gzip can hold. Reading takes the volume, a few
+//! times the compressed size, which is the most that gzip can hold, and 200 times beyond 256 MiB,
+//! which no scan reaches. Reading takes the volume, a few
 //! megabytes and, while 16-bit voxels turn out not to be enough, a half more.
 //!
 //! Limits: one volume a file, numbers only (no complex, colour or vector voxels), at least two

@@ -4,9 +4,13 @@
 
 mod common;
 
+use std::io::Read;
+
 use bonemesh_task::{Cancel, Task};
 use bonemesh_volume_file::{VolumeFile, VolumeFileError};
 use common::{Folder, NRRD, Nifti, gzip, nrrd, open, read, small_values, stored};
+use flate2::Compression;
+use flate2::read::GzEncoder;
 use proptest::prelude::*;
 
 /// The most voxels that a byte of a file can stand for: gzip of single bytes.
@@ -151,6 +155,19 @@ fn claims_beyond_the_file_are_refused_before_a_voxel_is_read() {
         let error = open("volume.nrrd", &nrrd(&header, &[0; 1000])).unwrap_err();
         assert!(matches!(error, VolumeFileError::CutOff { .. }), "{error}");
     }
+}
+
+#[test]
+fn a_bomb_is_refused_before_it_is_inflated() {
+    // 400 MB claimed in half a megabyte: gzip could hold that, but no scan is so even.
+    let mut file = Nifti::new(1);
+    (file.dim, file.data) = ([3, 1000, 1000, 200, 1, 1, 1, 1], vec![0; 520_000]);
+    let contents = file.bytes();
+    let mut encoder = GzEncoder::new(&contents[..], Compression::none());
+    let mut bytes = Vec::new();
+    encoder.read_to_end(&mut bytes).unwrap();
+    let error = open("volume.nii.gz", &bytes).unwrap_err();
+    assert!(matches!(error, VolumeFileError::Inflated { .. }), "{error}");
 }
 
 #[test]
