@@ -69,6 +69,18 @@ pub enum DicomError {
         /// UID of the transfer syntax.
         uid: String,
     },
+    /// Compressed pixels that the files cannot hold.
+    #[error(
+        "{slices} slices of {rows} x {columns} cannot be in files as small as these; copy the series again from its source"
+    )]
+    Implausible {
+        /// Slices of the volume.
+        slices: usize,
+        /// Rows of a slice.
+        rows: usize,
+        /// Columns of a slice.
+        columns: usize,
+    },
     /// Too few slices could be read.
     #[error(
         "only {readable} of {slices} slices can be read, {} is the first that cannot ({reason}); copy the series again from its source",

@@ -25,6 +25,8 @@ pub(crate) struct Parsed {
     pub(crate) start: u64,
     /// Where the data set ends: the file's size, or how far it inflates.
     pub(crate) size: u64,
+    /// Bytes that the data set takes in the file.
+    pub(crate) stored: u64,
 }
 
 /// The transfer syntax of a UID.
@@ -52,12 +54,13 @@ pub(crate) fn parse(path: &Path) -> Result<Parsed, FileError> {
         let limit = source.limit();
         let (elements, at) = Elements::read(&mut source, syntax, 0, limit, None)?;
         let pixels = elements.pixels.and_then(|p| p.length).unwrap_or(0);
-        let size = at + source.count(pixels);
+        let (stored, size) = (size, at + source.count(pixels));
         return Ok(Parsed {
             elements,
             syntax,
             start,
             size,
+            stored: stored - start,
         });
     }
     let (elements, _) = Elements::read(&mut file, syntax, start, size, None)?;
@@ -66,6 +69,7 @@ pub(crate) fn parse(path: &Path) -> Result<Parsed, FileError> {
         syntax,
         start,
         size,
+        stored: size - start,
     })
 }
 

@@ -14,6 +14,15 @@ use crate::vector::{cross, dot, length, scaled};
 /// Cosine of row against column direction from which they no longer count as perpendicular.
 const MAX_SKEW: f64 = 1e-2;
 
+/// Spacings of pixels (mm) that a scan can have: from a micrometre to a metre.
+const SPACING_MM: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
+
+/// Farthest place from the scanner's origin (mm), a kilometre.
+const MAX_PLACE_MM: f64 = 1e6;
+
+/// Largest rescale slope and intercept; with 32-bit pixels the values stay within 32-bit floats.
+const MAX_RESCALE: f64 = 1e12;
+
 /// How stored values are laid out in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Layout {
@@ -72,6 +81,8 @@ pub(crate) struct Header {
     pub(crate) instance: Option<i64>,
     pub(crate) layout: Layout,
     pub(crate) storage: Storage,
+    /// Bytes that the data set takes in the file.
+    pub(crate) stored: u64,
     /// What the rescaled values are, where the file says: `HU`, `US` (unspecified) or others.
     pub(crate) rescale_type: Option<String>,
     /// Positions had to be taken from the slice location.
@@ -109,7 +120,7 @@ impl Header {
             return Err(FileError::Header("fewer pixels than rows and columns say"));
         }
         let storage = storage(&parsed, pixels, frames.len());
-        plausible::check(&layout, &storage, available)?;
+        plausible::check(&layout, &storage, parsed.stored)?;
         Ok(Self {
             path: path.to_owned(),
             series_uid: e.text(tags::SERIES_INSTANCE_UID).unwrap_or_default(),
@@ -120,6 +131,7 @@ impl Header {
             instance: whole(e, tags::INSTANCE_NUMBER),
             layout,
             storage,
+            stored: parsed.stored,
             rescale_type: rescale_type(e),
             is_placed_by_location,
             is_cut_off: native.is_some() && available < needed,
@@ -257,15 +269,30 @@ fn frame(values: [&Values; 3], location: Option<f64>) -> Result<Frame, FileError
     // The standard writes the distance between rows first.
     let [between_rows, between_columns] =
         first::<2>(values, tags::PIXEL_SPACING).ok_or_else(|| geometry("no pixel spacing"))?;
-    if between_rows <= 0.0 || between_columns <= 0.0 {
+    if !SPACING_MM.contains(&between_rows) || !SPACING_MM.contains(&between_columns) {
         return Err(FileError::Geometry(format!(
-            "pixel spacing {between_rows} x {between_columns} mm; both must be above 0"
+            "pixel spacing {} x {} mm; both must be from 0.001 to 1000",
+            short(between_rows),
+            short(between_columns)
+        )));
+    }
+    if let Some(place) = position.iter().find(|p| p.abs() > MAX_PLACE_MM) {
+        return Err(FileError::Geometry(format!(
+            "a position {} mm away, more than a kilometre",
+            short(*place)
         )));
     }
     let [slope] = first::<1>(values, tags::RESCALE_SLOPE).unwrap_or([1.0]);
     let [intercept] = first::<1>(values, tags::RESCALE_INTERCEPT).unwrap_or([0.0]);
     if slope == 0.0 {
         return Err(geometry("rescale slope 0: all pixels would be equal"));
+    }
+    if slope.abs() > MAX_RESCALE || intercept.abs() > MAX_RESCALE {
+        return Err(FileError::Geometry(format!(
+            "rescale slope {} and intercept {}; both must be below {MAX_RESCALE:e}",
+            short(slope),
+            short(intercept)
+        )));
     }
     Ok(Frame {
         position,
@@ -275,6 +302,15 @@ fn frame(values: [&Values; 3], location: Option<f64>) -> Result<Frame, FileError
         intercept,
         slice_location: location,
     })
+}
+
+/// A number without hundreds of zeros.
+fn short(number: f64) -> String {
+    if number == 0.0 || (1e-4..1e9).contains(&number.abs()) {
+        number.to_string()
+    } else {
+        format!("{number:e}")
+    }
 }
 
 fn unit_axes(o: [f64; 6]) -> Result<[[f64; 3]; 2], FileError> {

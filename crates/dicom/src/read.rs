@@ -29,6 +29,7 @@ const BLENDS_AT_ONCE: usize = 32;
 /// of the stack, the volume is shorter.
 ///
 /// # Errors
+/// [`DicomError::Implausible`] when the files are far too small for their pixels,
 /// [`DicomError::TransferSyntax`] when the form of the pixels is not supported,
 /// [`DicomError::Unreadable`] when fewer than half the slices, or fewer than 2, can be read,
 /// [`DicomError::Memory`], [`DicomError::Volume`], [`DicomError::Cancelled`].
@@ -41,6 +42,14 @@ pub fn read_series(series: &Series, task: &Task) -> Result<(Volume, Vec<String>)
                 uid: storage.syntax_uid.to_owned(),
             });
         }
+    }
+    if !series.is_plausible() {
+        let (slices, rows, columns) = (series.slices, series.rows, series.columns);
+        return Err(DicomError::Implausible {
+            slices,
+            rows,
+            columns,
+        });
     }
     task.begin("read", series.stack.len());
     let mut warnings = series.warnings.clone();

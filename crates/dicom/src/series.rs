@@ -10,6 +10,8 @@ use serde::Serialize;
 use crate::error::DicomError;
 use crate::frame::is_readable;
 use crate::group::Stack;
+use crate::header::Header;
+use crate::plausible;
 use crate::line::Line;
 use crate::report::SeriesReport;
 use crate::slice::Slice;
@@ -91,6 +93,15 @@ impl Series {
             grid,
             line,
         })
+    }
+
+    /// Whether the files can hold the slices at all.
+    pub(crate) fn is_plausible(&self) -> bool {
+        let mut headers: Vec<_> = self.stack.iter().map(|s| &s.header).collect();
+        headers.dedup_by(|a, b| a.path == b.path);
+        let bytes = |h: &Header| h.layout.frame_bytes() * h.frames.len() as u64;
+        let pixels = headers.iter().map(|h| bytes(h)).sum();
+        plausible::fits(pixels, headers.iter().map(|h| h.stored).sum())
     }
 
     /// The geometry of `count` slices from place `begin` of the grid.
