@@ -30,6 +30,13 @@ need_packages() {
     apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends "${missing[@]}" >/dev/null
 }
 
+# CMake, which builds the decoders that are C and C++ (CharLS, libjpeg-turbo).
+need_cmake() {
+    command -v cmake >/dev/null && return 0
+    need_packages cmake
+    command -v cmake >/dev/null || fail "cmake is missing; install it (https://cmake.org/download) and try again"
+}
+
 # find_python VERSION: prints a working interpreter of that version, or fails.
 find_python() {
     local candidate

@@ -1,5 +1,16 @@
 //! Sizes that a compressed frame declares, looked up before a decoder believes them.
 
+/// How a codestream was made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Process {
+    /// JPEG, lossy.
+    Dct,
+    /// JPEG, lossless.
+    Lossless,
+    JpegLs,
+    Jpeg2000,
+}
+
 /// What a JPEG, JPEG-LS or JPEG 2000 codestream says about itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Declared {
@@ -7,15 +18,37 @@ pub(crate) struct Declared {
     pub(crate) columns: u32,
     pub(crate) bits: u32,
     pub(crate) components: u32,
+    pub(crate) process: Process,
 }
+
+/// Whether these are the first bytes of a codestream.
+pub(crate) fn begins(bytes: &[u8]) -> bool {
+    bytes.starts_with(&JPEG) || bytes.starts_with(&JPEG_2000)
+}
+
+/// Start of a JPEG or JPEG-LS image.
+const JPEG: [u8; 2] = [0xff, 0xd8];
+
+/// Start of a JPEG 2000 codestream, and of its SIZ segment, which comes first.
+const JPEG_2000: [u8; 4] = [0xff, 0x4f, 0xff, 0x51];
+
+/// Start of a JPEG 2000 file, which DICOM forbids and some write.
+const JP2: [u8; 8] = [0, 0, 0, 12, b'j', b'P', b' ', b' '];
+
+/// In how many bytes the codestream of a JPEG 2000 file begins.
+const JP2_BOXES: usize = 1024;
 
 /// Reads what the codestream declares; `None` where it declares nothing that makes sense.
 pub(crate) fn declared(bytes: &[u8]) -> Option<Declared> {
-    match bytes.get(..2)? {
-        [0xff, 0xd8] => jpeg(bytes),
-        [0xff, 0x4f] => jpeg_2000(bytes),
-        _ => None,
+    if bytes.starts_with(&JP2) {
+        let boxes = &bytes[..bytes.len().min(JP2_BOXES)];
+        let at = boxes.windows(4).position(|w| w == JPEG_2000)?;
+        return jpeg_2000(&bytes[at..]);
     }
+    if bytes.starts_with(&JPEG) {
+        return jpeg(bytes);
+    }
+    jpeg_2000(bytes)
 }
 
 fn number(bytes: &[u8], at: usize, length: usize) -> Option<u32> {
@@ -40,6 +73,11 @@ fn jpeg(bytes: &[u8]) -> Option<Declared> {
                     rows: number(bytes, at + 5, 2)?,
                     columns: number(bytes, at + 7, 2)?,
                     components: number(bytes, at + 9, 1)?,
+                    process: match marker {
+                        0xf7 => Process::JpegLs,
+                        0xc3 | 0xc7 | 0xcb | 0xcf => Process::Lossless,
+                        _ => Process::Dct,
+                    },
                 });
             }
             _ => at += 2 + number(bytes, at + 2, 2)? as usize,
@@ -47,9 +85,9 @@ fn jpeg(bytes: &[u8]) -> Option<Declared> {
     }
 }
 
-/// JPEG 2000: the SIZ segment, which comes first (ITU T.800 A.5.1).
+/// JPEG 2000: the SIZ segment (ITU T.800 A.5.1).
 fn jpeg_2000(bytes: &[u8]) -> Option<Declared> {
-    if bytes.get(2..4)? != [0xff, 0x51] {
+    if !bytes.starts_with(&JPEG_2000) {
         return None;
     }
     let field = |i: usize| number(bytes, 8 + 4 * i, 4);
@@ -58,6 +96,7 @@ fn jpeg_2000(bytes: &[u8]) -> Option<Declared> {
         rows: field(1)?.checked_sub(field(3)?)?,
         components: number(bytes, 40, 2)?,
         bits: (number(bytes, 42, 1)? & 0x7f) + 1,
+        process: Process::Jpeg2000,
     })
 }
 
@@ -74,6 +113,7 @@ mod tests {
             columns: 384,
             bits: 16,
             components: 1,
+            process: Process::Lossless,
         };
         assert_eq!(declared(&bytes), Some(expected));
     }
@@ -90,6 +130,7 @@ mod tests {
             columns: 64,
             bits: 16,
             components: 1,
+            process: Process::Jpeg2000,
         };
         assert_eq!(declared(&bytes), Some(expected));
     }

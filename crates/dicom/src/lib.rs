@@ -12,7 +12,8 @@
 //! slice by slice.
 //!
 //! Limits: modality CT (or none given), one sample a pixel. Transfer syntaxes: uncompressed,
-//! deflated, RLE, JPEG baseline (8 bit) and lossless, JPEG-LS, JPEG 2000; others are named and refused.
+//! deflated, RLE, JPEG (8 and 12 bit, and lossless), JPEG-LS, JPEG 2000 and its high-throughput
+//! form; others are named and refused.
 //! Nothing that identifies the patient is read from the files.
 //!
 //! ```no_run
@@ -31,21 +32,21 @@
 //!
 //! Source: the DICOM standard, PS3.3 (C.7.6.2 image plane, C.7.6.3 image pixel, C.11.1 modality
 //! LUT, C.7.6.16 multi-frame functional groups) and PS3.5 (encodings). Element headers and codecs
-//! are those of dicom-rs.
-
-#![forbid(unsafe_code)]
+//! are those of dicom-rs; JPEG-LS is `CharLS`, JPEG of 12 bits libjpeg-turbo.
 
 mod choice;
+mod codec;
 mod codestream;
 mod elements;
 mod error;
 mod file;
+mod fragments;
 mod frame;
 mod group;
 mod header;
 mod hounsfield;
 mod inflated;
-mod jpeg_ls;
+mod jpeg_12;
 mod line;
 mod plausible;
 mod read;
