@@ -13,6 +13,9 @@ from typing import Any
 RESERVED_ON_WINDOWS = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 NOT_IN_NAMES = re.compile(r'[\x00-\x1f\x7f/\\:*?"<>|]')
 WHOLE_NUMBER = re.compile(r"[0-9]{1,9}")
+NO_CT_IMAGES = (
+    "no folder of CT images is chosen; press Select File Directory of CT Images"
+)
 
 
 class RefusalError(Exception):
@@ -23,7 +26,8 @@ class RefusalError(Exception):
 class RenderInputs:
     """A checked request for a surface mesh."""
 
-    ct_directory: Path
+    ct_images: Path
+    """A folder, or one file with a whole volume."""
     output: Path
     name: str
     options: dict[str, Any]
@@ -32,9 +36,8 @@ class RenderInputs:
     @classmethod
     def read(cls, properties: Any, resolve: Callable[[str], str] = str) -> RenderInputs:
         """From `scene.bonemesh`; `resolve` makes Blender's relative paths absolute."""
-        ct_directory = existing_directory(
-            resolve(properties.ct_directory),
-            missing="no folder of CT images is chosen; press Select File Directory of CT Images",
+        ct_images = existing_path(
+            resolve(properties.ct_directory), missing=NO_CT_IMAGES
         )
         directory = output_directory(resolve(properties.mesh_directory))
         name = file_stem(properties.mesh_name, "Mesh Filename")
@@ -44,11 +47,12 @@ class RenderInputs:
             "method": properties.method,
             "sigma": as_typed(properties.sigma),
             "series": series_choice(properties.series),
+            "one_series": properties.one_series,
             "crop": properties.crop.strip() or None,
             "sample_percent": percent if percent < 100.0 else None,
             "sampler": properties.sampler,
         }
-        return cls(ct_directory, directory / f"{name}.stl", name, options)
+        return cls(ct_images, directory / f"{name}.stl", name, options)
 
 
 @dataclass(frozen=True)
@@ -81,13 +85,18 @@ def as_typed(value: float) -> float:
     return round(value, 5)
 
 
-def existing_directory(path: str, missing: str) -> Path:
-    """`path` as a folder that exists; `missing` is said where it is empty."""
+def existing_path(path: str, missing: str) -> Path:
+    """`path` as a folder or file that exists; `missing` is said where it is empty."""
     if not path.strip():
         raise RefusalError(missing)
-    directory = Path(path)
-    if not directory.exists():
+    if not Path(path).exists():
         raise RefusalError(f"{path} does not exist; choose another folder")
+    return Path(path)
+
+
+def existing_directory(path: str, missing: str) -> Path:
+    """`path` as a folder that exists; `missing` is said where it is empty."""
+    directory = existing_path(path, missing)
     if not directory.is_dir():
         raise RefusalError(f"{path} is a file; choose the folder it is in")
     return directory

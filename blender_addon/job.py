@@ -50,6 +50,10 @@ class Job(Generic[T]):
         _current = self
         self._thread.start()
 
+    def start_beside(self) -> None:
+        """Begins on a worker thread, whatever else is running: for short work that needs no place of its own."""
+        self._thread.start()
+
     def run_here(self) -> T:
         """Does the work on the calling thread. Raises BusyError while another job is running."""
         refuse_while_running()

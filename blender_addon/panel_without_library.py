@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The panel that stands in when the compiled library does not load: what is wrong and the remedy."""
 
-import textwrap
-
 import bpy
 from bpy.types import Context, Panel
 
-LINE_LENGTH = 40  # letters that fit the sidebar at its first width
+from .text import draw_text
 
 _problem = ""
 
@@ -23,8 +21,7 @@ class BONEMESH_PT_without_library(Panel):
         """Draws the problem, line by line."""
         column = self.layout.column(align=True)
         column.label(text="Bonemesh cannot work", icon="ERROR")
-        for line in textwrap.wrap(_problem, LINE_LENGTH):
-            column.label(text=line)
+        draw_text(column, context, _problem)
 
 
 def is_registered() -> bool:

@@ -6,7 +6,7 @@ from typing import ClassVar
 import bpy
 from bpy.types import Context, Panel, UILayout
 
-from . import job
+from . import contents_box, job
 from .operators.cancel import BONEMESH_OT_cancel
 from .operators.choose_ct_directory import BONEMESH_OT_choose_ct_directory
 from .operators.choose_mesh_directory import BONEMESH_OT_choose_mesh_directory
@@ -30,6 +30,7 @@ class BONEMESH_PT_segment_ct(Panel):
         column = layout.column()
         column.operator(BONEMESH_OT_choose_ct_directory.bl_idname)
         column.prop(properties, "ct_directory", text="")
+        contents_box.draw(column, context)
         column.prop(properties, "hu_threshold", slider=True)
         column.prop(properties, "cut_thickness")
 
@@ -77,6 +78,7 @@ class BONEMESH_PT_advanced(Panel):
         layout.use_property_decorate = False
         column = layout.column()
         column.prop(properties, "series")
+        column.prop(properties, "one_series")
         column.prop(properties, "crop")
         column.prop(properties, "method")
         column.prop(properties, "sigma")

@@ -1,11 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`scene.bonemesh`: what the panel asks for."""
 
-import os
-from collections.abc import Iterator
-from functools import lru_cache
-
-import bonemesh
 import bpy
 from bpy.props import (
     BoolProperty,
@@ -16,6 +11,8 @@ from bpy.props import (
     StringProperty,
 )
 from bpy.types import Context, PropertyGroup
+
+from . import scanning
 
 METHODS = [
     (
@@ -35,27 +32,15 @@ SAMPLERS = [
 ]
 
 
-@lru_cache(maxsize=4)
-def _series_found(directory: str, _modified: float) -> tuple[tuple[str, str], ...]:
-    return tuple(
-        (
-            str(s.number),
-            f"{s.description or 'no description'}, {s.slices} slices {s.columns} x {s.rows}",
-        )
-        for s in bonemesh.find_series(directory)
-    )
-
-
-def suggest_series(
-    self: "BonemeshProperties", _context: Context, _text: str
-) -> Iterator[tuple[str, str]]:
-    """The series of the chosen folder, offered when the user opens the field."""
-    directory = bpy.path.abspath(self.ct_directory)
-    try:
-        yield from _series_found(directory, os.stat(directory).st_mtime)
-    except (OSError, bonemesh.BonemeshError):
-        # Nothing to suggest yet: what is wrong with the folder is said when it is rendered.
-        return
+def ct_images_changed(self: "BonemeshProperties", _context: Context) -> None:
+    """Looks at what was chosen; the series of another folder is no choice in this one."""
+    request = scanning.request_of(self)
+    source = "" if request is None else f"{request.path} {request.one_series}"
+    if self.series_source not in ("", source):
+        self.series = ""
+    self.series_source = source
+    if scanning.is_watched:
+        scanning.begin(self)
 
 
 class BonemeshProperties(PropertyGroup):
@@ -63,8 +48,9 @@ class BonemeshProperties(PropertyGroup):
 
     ct_directory: StringProperty(
         name="CT Images",
-        description="Folder of CT images (DICOM files; folders inside it are searched too)",
-        subtype="DIR_PATH",
+        description="Folder of CT images (DICOM files; folders inside it are searched too), or one file with a whole volume (NIfTI, NRRD, multi-frame DICOM)",
+        subtype="FILE_PATH",
+        update=ct_images_changed,
     )
     mesh_directory: StringProperty(
         name="Mesh Folder",
@@ -123,9 +109,15 @@ class BonemeshProperties(PropertyGroup):
     )
     series: StringProperty(
         name="Series",
-        description="Number or UID of the series, where the folder holds several; empty takes the only one",
-        search=suggest_series,
-        search_options={"SUGGESTION"},
+        description="Number or UID of the series, where the folder holds several; empty takes the one that is marked",
+    )
+    series_source: StringProperty(
+        description="What `series` was chosen from", options={"HIDDEN"}
+    )
+    one_series: BoolProperty(
+        name="Treat Folder as One Series",
+        description="Takes all slices that fit together as one series, for folders whose files were exported with a number of their own each",
+        update=ct_images_changed,
     )
     crop: StringProperty(
         name="Crop",
@@ -137,14 +129,28 @@ class BonemeshProperties(PropertyGroup):
     )
 
 
+class BonemeshFolds(PropertyGroup):
+    """What is folded out in the panel; not in the scene, where a click would be a step to undo."""
+
+    show_details: BoolProperty(
+        name="Details", description="How the series is stored, and its UID"
+    )
+    show_left_out: BoolProperty(
+        name="Files Left Out", description="The files that are in no series, and why"
+    )
+
+
 def register() -> None:
-    """Adds `scene.bonemesh`."""
+    """Adds `scene.bonemesh` and what is folded out."""
     bpy.utils.register_class(BonemeshProperties)
+    bpy.utils.register_class(BonemeshFolds)
+    bpy.types.WindowManager.bonemesh_folds = PointerProperty(type=BonemeshFolds)
     bpy.types.Scene.bonemesh = PointerProperty(type=BonemeshProperties)
 
 
 def unregister() -> None:
     """Takes `scene.bonemesh` away."""
-    _series_found.cache_clear()
     del bpy.types.Scene.bonemesh
+    del bpy.types.WindowManager.bonemesh_folds
+    bpy.utils.unregister_class(BonemeshFolds)
     bpy.utils.unregister_class(BonemeshProperties)

@@ -5,15 +5,22 @@ import atexit
 
 import bpy
 
+from .. import scanning
 from . import background
 from .cancel import BONEMESH_OT_cancel
 from .choose_ct_directory import BONEMESH_OT_choose_ct_directory
 from .choose_mesh_directory import BONEMESH_OT_choose_mesh_directory
+from .choose_series import BONEMESH_OT_choose_series
 from .render_surface_mesh import BONEMESH_OT_render_surface_mesh
+from .scan_ct_directory import BONEMESH_OT_scan_ct_directory
 from .select_roi import BONEMESH_OT_select_roi
+from .stop_scan import BONEMESH_OT_stop_scan
 
 CLASSES = (
     BONEMESH_OT_choose_ct_directory,
+    BONEMESH_OT_choose_series,
+    BONEMESH_OT_scan_ct_directory,
+    BONEMESH_OT_stop_scan,
     BONEMESH_OT_choose_mesh_directory,
     BONEMESH_OT_render_surface_mesh,
     BONEMESH_OT_select_roi,
@@ -22,8 +29,9 @@ CLASSES = (
 
 
 def stop_jobs() -> None:
-    """Ends a running job and its timer: neither may outlive the operators or Blender."""
+    """Ends what runs, and its timers: nothing of it may outlive the operators or Blender."""
     background.stop_all(bpy.context)
+    scanning.stop()
 
 
 def register() -> None:

@@ -14,16 +14,14 @@ from typing import Any
 import bonemesh
 
 from .. import window
-from ..inputs import RefusalError
-from ..job import BusyError, Job, Progress, refuse_while_running
+from ..job import Job, Progress, refuse_while_running
 from ..job import stop as stop_job
+from ..messages import EXPECTED, one_line
 
 TICK_S = 0.1
 PATIENCE_S = (
     5.0  # a cancelled job ends within 0.2 s; a busy disk may hold it a little longer
 )
-
-EXPECTED = (RefusalError, BusyError, bonemesh.BonemeshError, OSError, MemoryError)
 
 log = logging.getLogger(__name__)
 
@@ -61,6 +59,9 @@ def stop_all(context: Any) -> None:
 class BackgroundOperator:
     """Mixed into an operator that has `prepare` and `finish`."""
 
+    is_pressed = False
+    """Whether a button in a window began it, so that the user sees the panel."""
+
     def prepare(self, context: Any) -> Job:
         """Checks the request, reads what is needed from Blender and says what is to be calculated."""
         raise NotImplementedError
@@ -89,6 +90,7 @@ class BackgroundOperator:
         """Starts the work beside the window; without a window, as `execute`."""
         if context.window is None:
             return self.execute(context)
+        self.is_pressed = True
         try:
             refuse_while_running()
             job = self.prepare(context)
@@ -146,14 +148,3 @@ class BackgroundOperator:
 def status_text(title: str, progress: Progress) -> str:
     """One line for the status bar."""
     return f"{title}: {progress.stage} {progress.fraction:.0%}   (Esc cancels)"
-
-
-def one_line(error: BaseException) -> str:
-    """What is said of `error`, with its remedy."""
-    if isinstance(error, MemoryError):
-        return "not enough memory; crop the images or keep fewer points (Advanced)"
-    if isinstance(error, OSError) and error.strerror and error.filename:
-        return f"{error.filename}: {error.strerror}; check the folder's rights and free space"
-    if isinstance(error, EXPECTED):
-        return str(error)
-    return f"unexpected {type(error).__name__}: {error}; please report it with the text in the system console"

@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""bonemesh.choose_ct_directory: picks the folder of CT images."""
+"""bonemesh.choose_ct_directory: picks the folder of CT images, or one file with a whole volume."""
 
+import os
 from typing import ClassVar
 
+import bpy
 from bpy.props import BoolProperty, StringProperty
-from bpy.types import Operator
+from bpy.types import Context, Event, Operator
 
-from .choose_directory import DirectoryPicker
+from .. import inputs
+from .choose_directory import NO_FOLDER, DirectoryPicker
 
 
 class BONEMESH_OT_choose_ct_directory(DirectoryPicker, Operator):
-    """Choose the folder of CT images"""
+    """Choose the folder of CT images, or one file with a whole volume (NIfTI, NRRD)"""
 
     bl_idname = "bonemesh.choose_ct_directory"
     bl_label = "Select File Directory of CT Images"
@@ -18,5 +21,26 @@ class BONEMESH_OT_choose_ct_directory(DirectoryPicker, Operator):
 
     target = "ct_directory"
 
-    directory: StringProperty(name="Folder", subtype="DIR_PATH")
+    directory: StringProperty(name="Folder", subtype="DIR_PATH", options={"SKIP_SAVE"})
+    filepath: StringProperty(name="File", subtype="FILE_PATH", options={"SKIP_SAVE"})
+    # No single slices: whoever sees them picks one, and a folder is meant.
+    filter_glob: StringProperty(
+        default="*.nii;*.nii.gz;*.hdr;*.nrrd;*.nhdr;DICOMDIR", options={"HIDDEN"}
+    )
     filter_folder: BoolProperty(default=True, options={"HIDDEN"})
+
+    def invoke(self, context: Context, _event: Event) -> set[str]:
+        """Opens the file browser at the last choice."""
+        path = context.scene.bonemesh.ct_directory
+        # Without the separator at its end Blender would show the folder as a file of the one above.
+        is_folder = bool(path) and os.path.isdir(bpy.path.abspath(path))
+        self.filepath = os.path.join(path, "") if is_folder else path
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def chosen(self) -> str:
+        """The file, or the folder that is shown where no file is picked; raises RefusalError."""
+        if not self.filepath:
+            return super().chosen()
+        inputs.existing_path(bpy.path.abspath(self.filepath), missing=NO_FOLDER)
+        return self.filepath

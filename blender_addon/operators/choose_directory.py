@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the two folder pickers share: Blender's file browser, and a refusal of what is no folder."""
+"""What the two pickers share: Blender's file browser, and a refusal of what is no folder."""
 
 import bpy
 from bpy.types import Context, Event
 
 from .. import inputs
+
+NO_FOLDER = "no folder is chosen; choose one"
 
 
 class DirectoryPicker:
@@ -21,12 +23,14 @@ class DirectoryPicker:
     def execute(self, context: Context) -> set[str]:
         """Takes the chosen folder, or refuses what is none."""
         try:
-            inputs.existing_directory(
-                bpy.path.abspath(self.directory),
-                missing="no folder is chosen; choose one",
-            )
+            path = self.chosen()
         except inputs.RefusalError as refusal:
             self.report({"ERROR"}, str(refusal))
             return {"CANCELLED"}
-        setattr(context.scene.bonemesh, self.target, self.directory)
+        setattr(context.scene.bonemesh, self.target, path)
         return {"FINISHED"}
+
+    def chosen(self) -> str:
+        """The folder as it was picked; raises RefusalError where it is none."""
+        inputs.existing_directory(bpy.path.abspath(self.directory), missing=NO_FOLDER)
+        return self.directory

@@ -7,7 +7,7 @@ import bonemesh
 import bpy
 from bpy.types import Context, Operator
 
-from .. import scene, window
+from .. import scanning, scene, window
 from ..inputs import RenderInputs
 from ..job import Job
 from .background import BackgroundOperator
@@ -25,11 +25,15 @@ class BONEMESH_OT_render_surface_mesh(BackgroundOperator, Operator):
         properties = context.scene.bonemesh
         self._inputs = inputs = RenderInputs.read(properties, bpy.path.abspath)
         self._center_in_world = properties.center_in_world
+        options = dict(inputs.options)
+        if self.is_pressed and options["series"] is None:
+            # The user sees which one the panel marks; the library alone refuses to guess.
+            options["series"] = scanning.marked_number(properties)
 
         def work(job: Job) -> bonemesh.Mesh:
             mesh = bonemesh.render(
-                inputs.ct_directory,
-                **inputs.options,
+                inputs.ct_images,
+                **options,
                 progress=job.note_progress,
                 cancel=job.cancel_token,
             )

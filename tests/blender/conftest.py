@@ -7,6 +7,7 @@ Run with the Python of a Blender set-up (scripts/setup_blender) after scripts/bu
 import importlib
 import json
 import os
+import struct
 import subprocess
 import sys
 import zipfile
@@ -14,6 +15,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import numpy as np
 import pytest
 
 HERE = Path(__file__).parent
@@ -55,6 +57,45 @@ def ct(bonemesh: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("ct") / "phantom"
     bonemesh.write_phantom("tube", folder, coarser=1.3)
     return folder
+
+
+@pytest.fixture(scope="session")
+def two(bonemesh: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two CT series of other orientation and size, the second with a gap, and files that are none."""
+    folder = tmp_path_factory.mktemp("two") / "Bärbel"
+    bonemesh.write_phantom("tube", folder / "first", coarser=1.3)
+    bonemesh.write_phantom(
+        "box-with-hole", folder / "second", coarser=2.0, orientation="coronal"
+    )
+    slices = sorted((folder / "second").rglob("*.dcm"))
+    slices[len(slices) // 2].unlink()
+    (folder / "notes").mkdir()
+    for number in range(25):
+        (folder / "notes" / f"{number:02}.txt").write_text("no image")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def nifti(bonemesh: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A NIfTI file of a phantom."""
+    volume = bonemesh.phantom("tube", coarser=1.3)
+    hu = volume.hu.astype("<i2")
+    # NIfTI looks at the patient from the other side: left and front are negative.
+    rows = np.diag([-1.0, -1.0, 1.0, 1.0]) @ volume.patient_from_voxel
+    header = bytearray(352)
+    struct.pack_into("<i", header, 0, 348)
+    struct.pack_into("<4h", header, 40, 3, *hu.shape[::-1])
+    struct.pack_into("<4h", header, 48, 1, 1, 1, 1)
+    struct.pack_into("<2h", header, 70, 4, 16)  # int16
+    struct.pack_into("<4f", header, 76, 1.0, *volume.spacing_mm)
+    struct.pack_into("<3f", header, 108, 352.0, 1.0, 0.0)
+    header[123] = 2  # mm
+    struct.pack_into("<2h", header, 252, 0, 1)  # the rows below are the scanner's
+    struct.pack_into("<12f", header, 280, *rows[:3].ravel())
+    header[344:348] = b"n+1\0"
+    file = tmp_path_factory.mktemp("nifti") / "head.nii"
+    file.write_bytes(bytes(header) + hu.tobytes())
+    return file
 
 
 class Blender:

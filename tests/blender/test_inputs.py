@@ -28,6 +28,7 @@ def fields(folder: Path, **changes: Any) -> Any:
         "sampler": "uniform",
         "method": "alpha",
         "series": "",
+        "one_series": False,
         "crop": "",
     }
     return SimpleNamespace(**(values | changes))
@@ -89,7 +90,7 @@ def test_a_region_never_overwrites_the_whole_mesh(tmp_path: Path) -> None:
 def test_paths_are_resolved_before_they_are_looked_at(tmp_path: Path) -> None:
     properties = fields(tmp_path, ct_directory="//ct", mesh_directory="//out")
     inputs = RenderInputs.read(properties, resolve=lambda _path: str(tmp_path))
-    assert inputs.ct_directory == tmp_path
+    assert inputs.ct_images == tmp_path
 
 
 def test_a_series_is_a_number_or_a_uid() -> None:

@@ -6,10 +6,11 @@ import pytest
 CASES = [
     ("ct picker: a file", ["file.txt", "folder"]),
     ("ct picker: nothing there", ["does not exist", "choose"]),
+    ("ct picker: a file that is not there", ["does not exist", "choose"]),
     ("mesh picker: a file", ["file.txt", "folder"]),
     ("mesh picker: nothing there", ["does not exist", "choose"]),
     ("no ct folder", ["Select File Directory of CT Images"]),
-    ("ct folder is a file", ["file.txt", "folder"]),
+    ("ct images are a file without any", ["file.txt", "not a DICOM file", "folder"]),
     ("ct folder is gone", ["does not exist"]),
     ("ct folder is empty", ["empty"]),
     ("ct folder without images", ["broken"]),

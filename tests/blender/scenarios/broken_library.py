@@ -13,6 +13,9 @@ def panel_says() -> str:
     lines = []
 
     class Column:
+        def column(self, align: bool = False) -> "Column":
+            return self
+
         def label(self, text: str = "", icon: str = "NONE") -> None:
             lines.append(text)
 

@@ -1,6 +1,5 @@
 """What the panels show, read from a layout that takes notes instead of drawing."""
 
-from importlib import import_module
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,38 +9,58 @@ from background import press, until_end
 
 
 class Layout:
-    """Notes every label, field and button in the order in which they are drawn."""
+    """Notes every label, field and button in the order in which they are drawn; a box is a list of its own."""
 
-    def __init__(self, shown: list[str]) -> None:
+    def __init__(self, shown: list[Any], buttons: list[Any]) -> None:
         self.shown = shown
+        self.buttons = buttons
 
     def column(self, **_options: Any) -> "Layout":
         return self
 
-    row = column
+    row = split = column
 
-    def label(self, text: str, **_options: Any) -> None:
-        self.shown.append(text)
+    def box(self) -> "Layout":
+        self.shown.append([])
+        return Layout(self.shown[-1], self.buttons)
+
+    def separator(self, factor: float) -> None:
+        pass
+
+    def label(self, text: str, icon: str = "NONE", **_options: Any) -> None:
+        self.shown.append(f"! {text}" if icon == "ERROR" else text)
 
     def prop(
         self, data: Any, name: str, text: str | None = None, **_options: Any
     ) -> None:
-        field = data.bl_rna.properties[name]
-        self.shown.append(f"[{name}]" if text == "" else f"{field.name} [{name}]")
+        shown = data.bl_rna.properties[name].name if text is None else text
+        self.shown.append(f"{shown} [{name}]".lstrip())
 
-    def operator(self, name: str, **_options: Any) -> None:
+    def operator(
+        self,
+        name: str,
+        text: str | None = None,
+        depress: bool = False,
+        **_options: Any,
+    ) -> Any:
         kind, verb = name.split(".")
-        self.shown.append(getattr(getattr(bpy.ops, kind), verb).get_rna_type().name)
+        label = getattr(getattr(bpy.ops, kind), verb).get_rna_type().name
+        self.shown.append(f"{'> ' if depress else ''}{text or label}")
+        self.buttons.append(SimpleNamespace(idname=name))
+        return self.buttons[-1]
 
     def progress(self, factor: float, text: str, **_options: Any) -> None:
         assert 0.0 <= factor <= 1.0
         self.shown.append(f"progress: {text}")
 
 
-def drawn(panel: str) -> list[str]:
-    """Everything that the panel shows now."""
-    shown: list[str] = []
-    getattr(bpy.types, panel).draw(SimpleNamespace(layout=Layout(shown)), bpy.context)
+def drawn(
+    panel: str = "BONEMESH_PT_segment_ct", buttons: list[Any] | None = None
+) -> list[Any]:
+    """Everything that the panel shows now; the values of its buttons are added to `buttons`."""
+    shown: list[Any] = []
+    layout = Layout(shown, [] if buttons is None else buttons)
+    getattr(bpy.types, panel).draw(SimpleNamespace(layout=layout), bpy.context)
     return shown
 
 
@@ -50,7 +69,6 @@ def main(zip: str, out: str, ct: str) -> dict[str, Any]:
     stage.install(zip)
     properties = stage.fill_panel(ct, out)
     panels = [bpy.types.BONEMESH_PT_segment_ct, bpy.types.BONEMESH_PT_advanced]
-    suggest = import_module(f"{stage.MODULE}.properties").suggest_series
     answer = {
         "tabs": [panel.bl_category for panel in panels],
         "closed": [
@@ -58,16 +76,12 @@ def main(zip: str, out: str, ct: str) -> dict[str, Any]:
         ],
         "main": drawn("BONEMESH_PT_segment_ct"),
         "advanced": drawn("BONEMESH_PT_advanced"),
-        "series": list(suggest(properties, bpy.context, "")),
         "limits": {
             name: [field.hard_min, field.hard_max, field.default]
             for name in ("hu_threshold", "cut_thickness", "sample_percent", "sigma")
             for field in [properties.bl_rna.properties[name]]
         },
     }
-    properties.ct_directory = "there/is/nothing/here"
-    answer["no series"] = list(suggest(properties, bpy.context, ""))
-    properties.ct_directory = ct
     operator, context, gate = press("render_surface_mesh", "render")
     answer["busy"] = drawn("BONEMESH_PT_segment_ct")
     gate.open()

@@ -50,6 +50,9 @@ def pickers(folder: Path) -> dict[str, str]:
         "ct picker: nothing there": stage.message_of(
             ops.choose_ct_directory, directory=LONG_AGO
         ),
+        "ct picker: a file that is not there": stage.message_of(
+            ops.choose_ct_directory, filepath=LONG_AGO, directory=str(folder)
+        ),
         "mesh picker: a file": stage.message_of(
             ops.choose_mesh_directory, directory=str(file)
         ),
@@ -68,7 +71,9 @@ def renderings(folder: Path) -> dict[str, str]:
     (broken / "image.dcm").write_bytes(b"no image")
     return {
         "no ct folder": rendering(ct_directory=""),
-        "ct folder is a file": rendering(ct_directory=str(folder / "file.txt")),
+        "ct images are a file without any": rendering(
+            ct_directory=str(folder / "file.txt")
+        ),
         "ct folder is gone": rendering(ct_directory=LONG_AGO),
         "ct folder is empty": rendering(ct_directory=str(empty)),
         "ct folder without images": rendering(ct_directory=str(broken)),

@@ -129,9 +129,13 @@ class Gate:
         """Returns when the function is held."""
         assert self._reached.wait(60.0), f"{self._name} showed no progress"
 
+    def let_others_pass(self) -> None:
+        """Later calls are not held."""
+        setattr(self._library, self._name, self._real)
+
     def open(self) -> None:
         """Lets the function go on; later calls are not held."""
-        setattr(self._library, self._name, self._real)
+        self.let_others_pass()
         self._opened.set()
 
 
@@ -167,6 +171,18 @@ def addon_job() -> Any:
 def addon_watches() -> list[Any]:
     """The add-on's list of jobs that have a timer."""
     return import_module(f"{MODULE}.operators.background").watches
+
+
+def addon_scans() -> Any:
+    """The add-on's module of scans."""
+    return import_module(f"{MODULE}.scans")
+
+
+def addon_scanning() -> Any:
+    """The add-on's module that begins scans, as it is where there is a window."""
+    scanning = import_module(f"{MODULE}.scanning")
+    scanning.is_watched = True
+    return scanning
 
 
 def front(placed: Any) -> Any:
