@@ -15,7 +15,7 @@ use crate::codestream::{Declared, Process, declared};
 use crate::error::FileError;
 use crate::file::syntax as find_syntax;
 use crate::header::Layout;
-use crate::jpeg_12;
+use crate::{jpeg_12, jpeg_2000};
 
 /// Largest frame that is decompressed; a small file may declare any size.
 const MAX_COMPRESSED_PIXELS: usize = 8192 * 8192;
@@ -117,7 +117,10 @@ fn code_stream(
             let bytes = with_reader(frame, syntax, layout, narrow)?;
             widened(bytes, narrow as usize / 8, width)
         }
-        Process::Jpeg2000 => with_reader(frame, syntax, layout, layout.bits_allocated)?,
+        Process::Jpeg2000 => {
+            let frame = jpeg_2000::checked(frame)?;
+            with_reader(frame, syntax, layout, layout.bits_allocated)?
+        }
     };
     // JPEG-LS knows no sign, and writers of JPEG 2000 forget it.
     let is_sign_lost = matches!(declared.process, Process::JpegLs | Process::Jpeg2000);

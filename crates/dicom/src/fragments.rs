@@ -29,25 +29,26 @@ struct Fragment {
 
 /// The compressed bytes of frame `index` of `frames`: its fragments put together.
 ///
-/// `begin` is where the first item lies.
+/// `begin` is where the first item lies; a frame of more than `most` bytes is refused.
 pub(crate) fn read<S: Read + Seek>(
     source: &mut S,
     begin: u64,
     frames: usize,
     index: usize,
+    most: u64,
 ) -> Result<Vec<u8>, FileError> {
     let size = source.seek(SeekFrom::End(0))?;
     source.seek(SeekFrom::Start(begin))?;
     let table = *items(source, size, 1)?
         .first()
         .ok_or(FileError::Header("no offset table before the pixels"))?;
-    let offsets = content(source, size, &[table])?;
+    let offsets = content(source, size, &[table], 4 * MAX_FRAGMENTS as u64)?;
     let (offsets, _) = offsets.as_chunks::<4>();
     let offsets: Vec<u32> = offsets.iter().map(|o| u32::from_le_bytes(*o)).collect();
     source.seek(SeekFrom::Start(table.at + table.length))?;
     let fragments = items(source, size, MAX_FRAGMENTS)?;
     let chosen = of_frame(&fragments, &offsets, frames, index)?;
-    content(source, size, chosen)
+    content(source, size, chosen, most)
 }
 
 /// The next items, `limit` at most; the last may reach beyond the end of the file.
@@ -82,7 +83,11 @@ fn content<S: Read + Seek>(
     source: &mut S,
     size: u64,
     fragments: &[Fragment],
+    most: u64,
 ) -> Result<Vec<u8>, FileError> {
+    if fragments.iter().map(|f| f.length).sum::<u64>() > most {
+        return Err(FileError::Header("a frame or its table is far too long"));
+    }
     let mut bytes = Vec::new();
     for Fragment { at, length, .. } in fragments {
         let needed = at + length;
@@ -173,7 +178,7 @@ mod tests {
     /// All frames, or what is wrong with the first that cannot be read.
     fn frames(bytes: &[u8], count: usize) -> Result<Vec<Vec<u8>>, String> {
         (0..count)
-            .map(|i| read(&mut Cursor::new(bytes), 0, count, i).map_err(|e| e.to_string()))
+            .map(|i| read(&mut Cursor::new(bytes), 0, count, i, 1000).map_err(|e| e.to_string()))
             .collect()
     }
 

@@ -15,6 +15,13 @@ use crate::header::{Layout, Storage};
 /// Bytes fetched at once between the pieces of compressed pixels: their headers are far apart.
 const BUFFER: usize = 512;
 
+/// Compressed bytes of a frame for each of its uncompressed ones: noise grows by an eighth when it
+/// is compressed, and 8 bits are sometimes compressed as 16.
+const MAX_GROWTH: u64 = 4;
+
+/// Most bytes of a frame beside its pixels: tables, comments, colour profiles.
+const MAX_HEADERS: u64 = 1 << 20;
+
 /// Whether pixels stored in this transfer syntax can be decoded.
 pub(crate) fn is_readable(syntax_uid: &str) -> bool {
     syntax(syntax_uid).is_ok_and(TransferSyntax::can_decode_all)
@@ -39,7 +46,9 @@ pub(crate) fn read_frame(
         }
         (Codec::EncapsulatedPixelData(..), None) => {
             let mut file = BufReader::with_capacity(BUFFER, file);
-            let frame = fragments::read(&mut file, storage.pixels.offset, storage.frames, index)?;
+            let Storage { pixels, frames, .. } = *storage;
+            let most = MAX_GROWTH * layout.frame_bytes() + MAX_HEADERS;
+            let frame = fragments::read(&mut file, pixels.offset, frames, index, most)?;
             decompress(frame, syntax, layout)
         }
         (Codec::EncapsulatedPixelData(..), Some(_)) => {

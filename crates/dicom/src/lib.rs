@@ -47,6 +47,7 @@ mod header;
 mod hounsfield;
 mod inflated;
 mod jpeg_12;
+mod jpeg_2000;
 mod line;
 mod plausible;
 mod read;
