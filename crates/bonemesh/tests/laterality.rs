@@ -11,8 +11,8 @@ use std::path::Path;
 use std::sync::{LazyLock, OnceLock};
 
 use bonemesh::{
-    Phantom, Rendered, ScanSettings, Settings, Task, TriangleMesh, Volume, Voxels, read_mesh,
-    render_volume, scan_phantom, write_mesh,
+    Frame, Phantom, Rendered, ScanSettings, Settings, Task, TriangleMesh, Volume, Voxels,
+    point_cloud, read_mesh, render_volume, scan_phantom, write_mesh,
 };
 use bonemesh_dicom::{find_series, read_series};
 use bonemesh_phantom::{SeriesLabels, write_dicom_series};
@@ -159,6 +159,30 @@ fn every_order_of_the_same_voxels_gives_the_same_mesh() {
         let mesh = &known(name).1;
         assert_eq!(mesh.triangles().len(), expected.len(), "{name}");
         assert!(on_the_axial_grid(mesh) == expected, "{name}");
+    }
+}
+
+/// What the test above is for: found in the planes of storage, edges are others.
+#[test]
+fn edges_found_in_the_planes_of_storage_are_others() {
+    let task = Task::default();
+    let back = known("axial").0.geometry().patient_from_voxel().inverse();
+    let back = back.unwrap();
+    let edges = |name: &str| -> HashSet<[i64; 3]> {
+        let volume = &known(name).0;
+        let cloud = point_cloud(volume, &halfway(), Frame::Image, &task).unwrap();
+        let affine = volume.geometry().patient_from_voxel();
+        let voxels = cloud.lattice().unwrap().coordinates.iter();
+        voxels
+            .map(|at| back.apply(affine.apply(at.map(f64::from))))
+            .map(|at| at.map(|v| v.round() as i64))
+            .collect()
+    };
+    let expected = edges("axial");
+    for name in ["sagittal", "coronal"] {
+        let others = edges(name).symmetric_difference(&expected).count();
+        println!("{name}: {others} of {} edge voxels differ", expected.len());
+        assert!(others > 100, "{name}: {others}");
     }
 }
 
