@@ -60,6 +60,9 @@ pub fn render_volume(volume: &Volume, settings: &Settings, task: &Task) -> Resul
 
 /// The (sampled) point cloud of the bone's edges in `volume`.
 ///
+/// In the patient frame edges are found, and points ordered, in the volume's patient order
+/// ([`Volume::in_patient_order`]); in the image frame as the voxels are stored.
+///
 /// # Errors
 /// Any [`Error`] but those of reading and meshing.
 pub fn point_cloud(
