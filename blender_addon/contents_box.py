@@ -108,8 +108,8 @@ def draw_advice(
         text = f"{typed} names no single series here; choose one of the list"
     elif contents.alternatives and not typed:
         text = (
-            f"{1 + len(contents.alternatives)} series could be meant. The largest, {chosen.number}, "
-            "is marked and will be rendered; click another if it is not yours"
+            f"{1 + len(contents.alternatives)} series could be meant. The recommended one, "
+            f"{chosen.number}, is marked and will be rendered; click another if it is not yours"
         )
     else:
         return

@@ -49,12 +49,11 @@ def shown(properties: Any) -> FolderScan | None:
     return scan
 
 
-def marked_number(properties: Any) -> int | None:
-    """Number of the series that the panel marks, once the scan has ended."""
+def marked_choice(properties: Any) -> int | str | None:
+    """The series that the panel marks, once the scan has ended, as the library wants it named."""
     request = request_of(properties)
     scan = None if request is None else scans.known(request)
-    series = None if scan is None else scan.chosen(properties.series)
-    return None if series is None else series.number
+    return None if scan is None else scan.choice(properties.series)
 
 
 def stop() -> None:

@@ -54,6 +54,17 @@ class FolderScan:
         named = [s for s in self.contents.series if choice in (s.number, s.uid)]
         return named[0] if len(named) == 1 else None
 
+    def choice(self, series: str) -> int | str | None:
+        """How to name the chosen series to the library; None where there is none.
+
+        By its UID if that tells it apart: files that come or go meanwhile change the numbers.
+        """
+        chosen = self.chosen(series)
+        if chosen is None:
+            return None
+        has_own_uid = chosen.uid and self.chosen(chosen.uid) is chosen
+        return chosen.uid if has_own_uid else chosen.number
+
     def _work(self, job: Job) -> None:
         try:
             contents = bonemesh.scan(

@@ -26,9 +26,9 @@ class BONEMESH_OT_render_surface_mesh(BackgroundOperator, Operator):
         self._inputs = inputs = RenderInputs.read(properties, bpy.path.abspath)
         self._center_in_world = properties.center_in_world
         options = dict(inputs.options)
-        if self.is_pressed and options["series"] is None:
-            # The user sees which one the panel marks; the library alone refuses to guess.
-            options["series"] = scanning.marked_number(properties)
+        if self.is_pressed:
+            # The user sees which series the panel marks; the library alone refuses to guess.
+            options["series"] = scanning.marked_choice(properties) or options["series"]
 
         def work(job: Job) -> bonemesh.Mesh:
             mesh = bonemesh.render(

@@ -76,6 +76,18 @@ def two(bonemesh: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
+def own_uids(bonemesh: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """One CT series whose slices were each given a series UID of their own."""
+    folder = tmp_path_factory.mktemp("own_uids")
+    bonemesh.write_phantom("tube", folder, coarser=2.0)
+    (series,) = bonemesh.find_series(folder)
+    uid = series.uid.encode()
+    for number, file in enumerate(series.files):
+        file.write_bytes(file.read_bytes().replace(uid, uid[:-2] + b"%02d" % number))
+    return folder
+
+
+@pytest.fixture(scope="session")
 def nifti(bonemesh: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A NIfTI file of a phantom."""
     volume = bonemesh.phantom("tube", coarser=1.3)

@@ -215,27 +215,59 @@ def test_no_scan_outlives_the_addon_or_blender(
     assert answer["timer"] is (how == "quit")
 
 
-def test_the_series_that_the_panel_marks_is_rendered(
-    blender: Blender, bonemesh: ModuleType, two: Path
-) -> None:
-    answer = blender.run("several_series", two=two)
-    for case, number in (("marked", 1), ("clicked", 2)):
-        _, file = answer[case]
-        expected = bonemesh.render(two, series=number)
-        got = np.load(file)
-        assert np.array_equal(got["patient"], expected.vertices), case
-        assert np.array_equal(got["triangles"], expected.triangles), case
+@pytest.fixture(scope="module")
+def several(
+    extension_zip: Path,
+    two: Path,
+    own_uids: Path,
+    tmp_path_factory: pytest.TempPathFactory,
+) -> dict[str, Any]:
+    return Blender(extension_zip, tmp_path_factory.mktemp("several")).run(
+        "several_series", two=two, own_uids=own_uids
+    )
 
-    for message in (answer["by script"], answer["unseen"][0][1]):
-        assert "1" in message and "2" in message, "nothing is picked unseen"
-    assert answer["unseen"][0][0] == "ERROR"
+
+def assert_same(file: str, expected: Any) -> None:
+    got = np.load(file)
+    assert np.array_equal(got["patient"], expected.vertices)
+    assert np.array_equal(got["triangles"], expected.triangles)
+
+
+@pytest.mark.parametrize(("case", "number"), [("marked", 1), ("clicked", 2)])
+def test_the_series_that_the_panel_marks_is_rendered(
+    several: dict[str, Any], bonemesh: ModuleType, two: Path, case: str, number: int
+) -> None:
+    reports, file = several[case]
+    assert reports[-1][0] == "INFO"
+    assert_same(file, bonemesh.render(two, series=number))
+
+
+def test_the_series_that_was_seen_is_rendered_though_the_numbers_changed(
+    several: dict[str, Any], bonemesh: ModuleType, two: Path
+) -> None:
+    _, file = several["renumbered"]
+    assert_same(file, bonemesh.render(two, series=2))
+
+
+def test_nothing_is_picked_that_nobody_has_seen(several: dict[str, Any]) -> None:
+    ((kind, unseen),) = several["unseen"]
+    assert kind == "ERROR"
+    for message in (several["by script"], unseen):
+        assert "Phantom tube" in message
+        assert "Phantom box-with-hole" in message
+
+
+def test_a_folder_of_single_slices_can_be_taken_as_one_series(
+    several: dict[str, Any], bonemesh: ModuleType, own_uids: Path
+) -> None:
+    assert "1 series" not in several["each"]
+    shown, file = several["as one"]
+    assert "1 series" in shown
+    assert_same(file, bonemesh.render(own_uids, one_series=True))
 
 
 def test_a_file_with_a_whole_volume_is_rendered(
     blender: Blender, bonemesh: ModuleType, nifti: Path
 ) -> None:
     answer = blender.run("render", ct=nifti, fields={})
-    expected = bonemesh.render(nifti)
-    got = np.load(answer["mesh"])
-    assert np.array_equal(got["patient"], expected.vertices)
-    assert np.array_equal(got["triangles"], expected.triangles)
+    assert_same(answer["mesh"], bonemesh.render(nifti))

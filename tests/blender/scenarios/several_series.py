@@ -1,5 +1,6 @@
 """Renders from a folder with two series: as a script does, as a button does, and by a click on the list."""
 
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +24,7 @@ def rendered(folder: Path, name: str) -> str:
     return stage.save_mesh(folder / f"{name}.npz", bpy.data.objects[name])
 
 
-def main(zip: str, out: str, two: str) -> dict[str, Any]:
+def main(zip: str, out: str, two: str, own_uids: str) -> dict[str, Any]:
     """Says which series was rendered in each case."""
     folder = Path(out)
     stage.install(zip)
@@ -37,13 +38,27 @@ def main(zip: str, out: str, two: str) -> dict[str, Any]:
     row = rows()[1]
     bpy.ops.bonemesh.choose_series(number=row.number, title=row.title)
     clicked = press_render()
+    changing = folder / "changing"
+    shutil.copytree(two, changing)
+    properties.ct_directory = str(changing)
+    until_scanned()
+    properties.mesh_name = "renumbered"
+    bpy.ops.bonemesh.choose_series(number=2)
+    for file in sorted((changing / "first").rglob("*.dcm"))[:30]:
+        file.unlink()  # the second series is the larger one now
+    renumbered = press_render()
     properties.mesh_name = "one"
+    properties.ct_directory = own_uids
+    each = until_scanned()
     properties.one_series = True
-    as_one = stage.message_of(bpy.ops.bonemesh.render_surface_mesh)
+    as_one = until_scanned()
+    bpy.ops.bonemesh.render_surface_mesh()
     return {
         "by script": by_script,
         "unseen": unseen,
         "marked": [marked, rendered(folder, "marked")],
         "clicked": [clicked, rendered(folder, "clicked")],
-        "as one": as_one,
+        "renumbered": [renumbered, rendered(folder, "renumbered")],
+        "each": each,
+        "as one": [as_one, rendered(folder, "one")],
     }
