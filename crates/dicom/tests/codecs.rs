@@ -1,5 +1,8 @@
 //! Every codec gives back the stored values, and what is damaged is named.
 
+// Helpers of these tests may panic.
+#![allow(clippy::unwrap_used)]
+
 mod common;
 
 use bonemesh_dicom::{DicomError, read_series};
@@ -8,6 +11,7 @@ use common::{COLUMNS, Image, ROWS, folder, hu, read, scan, stored};
 use dicom_core::value::PixelFragmentSequence;
 use dicom_core::{DataElement, VR};
 use dicom_dictionary_std::{tags, uids};
+use dicom_encoding::adapters::EncodeOptions;
 use dicom_encoding::transfer_syntax::TransferSyntaxIndex;
 use dicom_object::FileMetaTableBuilder;
 use dicom_transfer_syntax_registry::TransferSyntaxRegistry;
@@ -64,7 +68,7 @@ fn jpeg_ls(image: Image) -> Image {
     let writer = codec.pixel_data_writer().unwrap();
     let mut frame = Vec::new();
     writer
-        .encode_frame(&file, 0, Default::default(), &mut frame)
+        .encode_frame(&file, 0, EncodeOptions::default(), &mut frame)
         .unwrap();
     // In two fragments: one frame is all of them.
     let rest = frame.split_off(frame.len() / 4 * 2);
