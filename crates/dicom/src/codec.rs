@@ -15,7 +15,7 @@ use crate::codestream::{Declared, Process, declared};
 use crate::error::FileError;
 use crate::file::syntax as find_syntax;
 use crate::header::Layout;
-use crate::{jpeg_12, jpeg_2000};
+use crate::{jpeg_12, jpeg_2000, rle};
 
 /// Largest frame that is decompressed; a small file may declare any size.
 const MAX_COMPRESSED_PIXELS: usize = 8192 * 8192;
@@ -44,7 +44,7 @@ fn decode(frame: Vec<u8>, syntax: &TransferSyntax, layout: &Layout) -> Result<Ve
         uids::ENCAPSULATED_UNCOMPRESSED_EXPLICIT_VR_LITTLE_ENDIAN => exactly(frame, layout),
         uids::DEFLATED_IMAGE_FRAME_COMPRESSION => inflate(frame, layout),
         uids::RLE_LOSSLESS => {
-            check_segments(&frame, layout)?;
+            rle::check(&frame, layout)?;
             with_reader(frame, syntax, layout, layout.bits_allocated)
         }
         _ => code_stream(frame, syntax, layout),
@@ -77,18 +77,6 @@ fn inflate(frame: Vec<u8>, layout: &Layout) -> Result<Vec<u8>, String> {
         .read_to_end(&mut bytes)
         .map_err(|e| e.to_string())?;
     exactly(bytes, layout)
-}
-
-/// The decoder asks for memory for as many segments as are declared.
-fn check_segments(frame: &[u8], layout: &Layout) -> Result<(), String> {
-    let (declared, _) = frame.split_first_chunk::<4>().ok_or("no segments")?;
-    let declared = u32::from_le_bytes(*declared);
-    let needed = layout.bits_allocated / 8;
-    if declared == needed {
-        Ok(())
-    } else {
-        Err(format!("{declared} segments where {needed} are needed"))
-    }
 }
 
 fn code_stream(

@@ -52,6 +52,7 @@ mod line;
 mod plausible;
 mod read;
 mod report;
+mod rle;
 mod scan;
 mod series;
 mod slice;
