@@ -20,6 +20,9 @@ ORIENTATIONS = [
     "oblique",
     "tilted",
     "feet-first",
+    "prone",
+    "decubitus-left",
+    "decubitus-right",
 ]
 # DICOM writes numbers as decimal text of 16 characters.
 MM = 1e-6

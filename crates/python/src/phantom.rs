@@ -27,7 +27,8 @@ struct Changes<'a> {
 /// - `name`: "line", "cylinder", "cube", "two-cubes", "cube-with-hole" and "curved" are drawn in
 ///   pixels; "sphere-shell", "tube", "femur", "box-with-hole" and "head" are bodies in mm.
 /// - `coarser`: voxels this many times as long over the same field of view.
-/// - `orientation`: "axial", "reversed", "sagittal", "coronal", "oblique", "tilted", "feet-first".
+/// - `orientation`: "axial", "reversed", "sagittal", "coronal", "oblique", "tilted", "feet-first",
+///   "prone", "decubitus-left", "decubitus-right".
 /// - `psf_px`, `noise_hu`, `seed`: blur in pixels, noise in HU and its seed; None is as usual.
 #[pyfunction]
 #[pyo3(signature = (name, *, coarser=1.0, orientation=None, psf_px=None, noise_hu=None, seed=None, threads=None, progress=None, cancel=None))]

@@ -7,7 +7,7 @@ use std::str::FromStr;
 use bonemesh_cloud::{Frame, Percent, Sampler};
 use bonemesh_dicom::SeriesChoice;
 use bonemesh_mesh::{MeshFormat, TriangleMesh};
-use bonemesh_phantom::{Orientation, Phantom, PhantomError, ScanSettings};
+use bonemesh_phantom::{ORIENTATIONS, Orientation, Phantom, PhantomError, ScanSettings};
 use bonemesh_roi::{Method as RoiMethod, ThicknessMm};
 use bonemesh_segment::{CannySettings, HuThreshold};
 use bonemesh_volume::CropBox;
@@ -251,8 +251,8 @@ pub(super) struct PhantomArguments {
     /// Make pixels and slices this many times as large, over the same field of view.
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = length_mm)]
     coarser: f64,
-    /// Direction of the slices: axial, reversed, sagittal, coronal, oblique, tilted, feet-first.
-    #[arg(long, default_value = "axial")]
+    /// How the patient lies and the slices run (--help lists the names).
+    #[arg(long, default_value = "axial", long_help = orientation_names())]
     orientation: Orientation,
     /// Leave out blur and noise.
     #[arg(long)]
@@ -283,16 +283,23 @@ fn phantom(name: &str) -> Result<Phantom, String> {
 }
 
 fn phantom_names() -> String {
-    let line = |p: Phantom| {
-        format!(
-            "
-  {:16}{}",
-            p.name(),
-            p.description()
-        )
-    };
-    let lines: String = Phantom::ALL.into_iter().map(line).collect();
-    format!("Name of the phantom:{lines}")
+    let names = Phantom::ALL
+        .into_iter()
+        .map(|p| (p.name(), p.description()));
+    listed("Name of the phantom:", names)
+}
+
+fn orientation_names() -> String {
+    listed(
+        "How the patient lies and the slices run:",
+        ORIENTATIONS.into_iter(),
+    )
+}
+
+/// A title and, below it, names with what they mean.
+fn listed(title: &str, names: impl Iterator<Item = (&'static str, &'static str)>) -> String {
+    let lines: Vec<String> = names.map(|(n, means)| format!("  {n:16}{means}")).collect();
+    format!("{title}\n{}", lines.join("\n"))
 }
 
 impl EdgeArguments {

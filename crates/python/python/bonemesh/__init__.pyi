@@ -48,7 +48,16 @@ _Progress: TypeAlias = Callable[[str, float], object]
 _Crop: TypeAlias = str | Sequence[tuple[SupportsIndex, SupportsIndex]]
 _Sampler: TypeAlias = Literal["uniform", "random", "thesis-uniform"]
 _Orientation: TypeAlias = Literal[
-    "axial", "reversed", "sagittal", "coronal", "oblique", "tilted", "feet-first"
+    "axial",
+    "reversed",
+    "sagittal",
+    "coronal",
+    "oblique",
+    "tilted",
+    "feet-first",
+    "prone",
+    "decubitus-left",
+    "decubitus-right",
 ]
 
 class BonemeshError(Exception): ...
