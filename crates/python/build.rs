@@ -20,13 +20,15 @@ use serde_json::Value;
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
 /// Beginnings of the names of files that hold a licence or a notice, in lower case.
-const NOTICE_FILES: [&str; 6] = [
+const NOTICE_FILES: [&str; 7] = [
     "license",
     "licence",
     "copying",
     "copyright",
     "notice",
     "unlicense",
+    // The licence of the Independent JPEG Group's code is a part of its read-me.
+    "readme.ijg",
 ];
 
 fn main() -> Result<()> {
@@ -158,12 +160,25 @@ fn notices(packages: &[&Value]) -> Result<String> {
     Ok(text)
 }
 
-/// Licence and notice files at the top of a package, in the order of their names.
+/// Licence and notice files at the top of a package, and at the top of the folders in it, where
+/// the sources of C and C++ libraries lie; in the order of their names.
 fn notice_files(package: &Value) -> Result<Vec<PathBuf>> {
     let manifest = plain(&package["manifest_path"]);
     let folder = Path::new(&manifest)
         .parent()
         .ok_or("a manifest lies in a folder")?;
+    let mut files = notices_in(folder)?;
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            files.extend(notices_in(&path)?);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+fn notices_in(folder: &Path) -> Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
@@ -176,7 +191,6 @@ fn notice_files(package: &Value) -> Result<Vec<PathBuf>> {
             files.push(path);
         }
     }
-    files.sort();
     Ok(files)
 }
 

@@ -27,28 +27,49 @@ struct Fragment {
     begins: bool,
 }
 
-/// The compressed bytes of frame `index` of `frames`: its fragments put together.
-///
-/// `begin` is where the first item lies; a frame of more than `most` bytes is refused.
-pub(crate) fn read<S: Read + Seek>(
-    source: &mut S,
-    begin: u64,
-    frames: usize,
-    index: usize,
-    most: u64,
-) -> Result<Vec<u8>, FileError> {
-    let size = source.seek(SeekFrom::End(0))?;
-    source.seek(SeekFrom::Start(begin))?;
-    let table = *items(source, size, 1)?
-        .first()
-        .ok_or(FileError::Header("no offset table before the pixels"))?;
-    let offsets = content(source, size, &[table], 4 * MAX_FRAGMENTS as u64)?;
-    let (offsets, _) = offsets.as_chunks::<4>();
-    let offsets: Vec<u32> = offsets.iter().map(|o| u32::from_le_bytes(*o)).collect();
-    source.seek(SeekFrom::Start(table.at + table.length))?;
-    let fragments = items(source, size, MAX_FRAGMENTS)?;
-    let chosen = of_frame(&fragments, &offsets, frames, index)?;
-    content(source, size, chosen, most)
+/// Which fragments of a file are whose frame's.
+#[derive(Clone, Debug)]
+pub(crate) struct Index {
+    fragments: Vec<Fragment>,
+    /// The first fragment of each frame.
+    firsts: Vec<usize>,
+}
+
+impl Index {
+    /// Looks through the items of `frames` frames; `begin` is where the first item lies.
+    pub(crate) fn read<S: Read + Seek>(
+        source: &mut S,
+        begin: u64,
+        frames: usize,
+    ) -> Result<Self, FileError> {
+        let size = source.seek(SeekFrom::End(0))?;
+        source.seek(SeekFrom::Start(begin))?;
+        let table = *items(source, size, 1)?
+            .first()
+            .ok_or(FileError::Header("no offset table before the pixels"))?;
+        let offsets = content(source, size, &[table], 4 * MAX_FRAGMENTS as u64)?;
+        let (offsets, _) = offsets.as_chunks::<4>();
+        let offsets: Vec<u32> = offsets.iter().map(|o| u32::from_le_bytes(*o)).collect();
+        source.seek(SeekFrom::Start(table.at + table.length))?;
+        let fragments = items(source, size, MAX_FRAGMENTS)?;
+        let firsts = firsts(&fragments, &offsets, frames)?;
+        Ok(Self { fragments, firsts })
+    }
+
+    /// The compressed bytes of frame `index`: its fragments put together.
+    ///
+    /// A frame of more than `most` bytes is refused.
+    pub(crate) fn frame<S: Read + Seek>(
+        &self,
+        source: &mut S,
+        index: usize,
+        most: u64,
+    ) -> Result<Vec<u8>, FileError> {
+        let size = source.seek(SeekFrom::End(0))?;
+        let end = self.firsts.get(index + 1).copied();
+        let end = end.unwrap_or(self.fragments.len());
+        content(source, size, &self.fragments[self.firsts[index]..end], most)
+    }
 }
 
 /// The next items, `limit` at most; the last may reach beyond the end of the file.
@@ -101,18 +122,13 @@ fn content<S: Read + Seek>(
     Ok(bytes)
 }
 
-/// The fragments of frame `index` of `frames`.
-fn of_frame<'a>(
-    fragments: &'a [Fragment],
-    offsets: &[u32],
-    frames: usize,
-    index: usize,
-) -> Result<&'a [Fragment], FileError> {
+/// The first fragment of each of `frames` frames.
+fn firsts(fragments: &[Fragment], offsets: &[u32], frames: usize) -> Result<Vec<usize>, FileError> {
     if frames == 1 {
-        return Ok(fragments);
+        return Ok(vec![0]);
     }
     if fragments.len() == frames {
-        return Ok(&fragments[index..=index]);
+        return Ok((0..frames).collect());
     }
     let firsts = by_table(fragments, offsets)
         .filter(|firsts| firsts.len() == frames)
@@ -123,8 +139,7 @@ fn of_frame<'a>(
             fragments.len()
         )));
     }
-    let end = firsts.get(index + 1).copied().unwrap_or(fragments.len());
-    Ok(&fragments[firsts[index]..end])
+    Ok(firsts)
 }
 
 /// Which fragments are the first of a frame, if every offset is that of a fragment.
@@ -177,8 +192,10 @@ mod tests {
 
     /// All frames, or what is wrong with the first that cannot be read.
     fn frames(bytes: &[u8], count: usize) -> Result<Vec<Vec<u8>>, String> {
+        let mut source = Cursor::new(bytes);
+        let index = Index::read(&mut source, 0, count).map_err(|e| e.to_string())?;
         (0..count)
-            .map(|i| read(&mut Cursor::new(bytes), 0, count, i, 1000).map_err(|e| e.to_string()))
+            .map(|i| index.frame(&mut source, i, 1000).map_err(|e| e.to_string()))
             .collect()
     }
 

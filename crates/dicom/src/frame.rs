@@ -9,7 +9,7 @@ use dicom_encoding::transfer_syntax::{Codec, Endianness, TransferSyntax};
 use crate::codec::decompress;
 use crate::error::FileError;
 use crate::file::{inflated_part, syntax};
-use crate::fragments;
+use crate::fragments::Index;
 use crate::header::{Layout, Storage};
 
 /// Bytes fetched at once between the pieces of compressed pixels: their headers are far apart.
@@ -46,9 +46,8 @@ pub(crate) fn read_frame(
         }
         (Codec::EncapsulatedPixelData(..), None) => {
             let mut file = BufReader::with_capacity(BUFFER, file);
-            let Storage { pixels, frames, .. } = *storage;
             let most = MAX_GROWTH * layout.frame_bytes() + MAX_HEADERS;
-            let frame = fragments::read(&mut file, pixels.offset, frames, index, most)?;
+            let frame = indexed(&mut file, storage)?.frame(&mut file, index, most)?;
             decompress(frame, syntax, layout)
         }
         (Codec::EncapsulatedPixelData(..), Some(_)) => {
@@ -57,6 +56,19 @@ pub(crate) fn read_frame(
         (_, None) => Err(FileError::Header("the pixels have no length")),
         (_, Some(_)) => native(&mut file, syntax, storage, layout, index),
     }
+}
+
+/// Where the frames' fragments lie: looked up once a file, not once a frame.
+fn indexed<'s, S: Read + Seek>(
+    source: &mut S,
+    storage: &'s Storage,
+) -> Result<&'s Index, FileError> {
+    if let Some(index) = storage.fragments.get() {
+        return Ok(index);
+    }
+    let index = Index::read(source, storage.pixels.offset, storage.frames)?;
+    // Several threads may have looked at once: all found the same.
+    Ok(storage.fragments.get_or_init(|| index))
 }
 
 fn native<S: Read + Seek>(

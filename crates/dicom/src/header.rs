@@ -1,6 +1,7 @@
 //! What the header of one image says, checked: a [`Header`] has everything a slice needs.
 
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use dicom_core::Tag;
 use dicom_dictionary_std::{tags, uids};
@@ -8,6 +9,7 @@ use dicom_dictionary_std::{tags, uids};
 use crate::elements::{Elements, PixelPlace, Values, numbers, text};
 use crate::error::FileError;
 use crate::file::{self, Parsed};
+use crate::fragments::Index;
 use crate::plausible;
 use crate::vector::{cross, dot, length, scaled};
 
@@ -45,7 +47,7 @@ impl Layout {
 }
 
 /// Where a file's pixels are and in what form.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Storage {
     pub(crate) syntax_uid: &'static str,
     pub(crate) syntax_name: &'static str,
@@ -54,6 +56,8 @@ pub(crate) struct Storage {
     pub(crate) pixels: PixelPlace,
     /// Frames in the file.
     pub(crate) frames: usize,
+    /// Where the fragments of compressed frames lie, once one has been read.
+    pub(crate) fragments: OnceLock<Index>,
 }
 
 /// One frame's place, and the way from stored values to Hounsfield units.
@@ -150,6 +154,7 @@ fn storage(parsed: &Parsed, pixels: PixelPlace, frames: usize) -> Storage {
         start: parsed.start,
         pixels,
         frames,
+        fragments: OnceLock::new(),
     }
 }
 

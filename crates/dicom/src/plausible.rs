@@ -55,6 +55,8 @@ pub(crate) fn check(layout: &Layout, storage: &Storage, stored: u64) -> Result<(
 mod tests {
     use dicom_dictionary_std::uids;
 
+    use std::sync::OnceLock;
+
     use super::*;
     use crate::elements::PixelPlace;
 
@@ -79,6 +81,7 @@ mod tests {
                 length: (uid == DEFLATED).then_some(4),
             },
             frames,
+            fragments: OnceLock::new(),
         };
         check(&layout, &storage, stored).is_ok()
     }
