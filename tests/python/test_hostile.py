@@ -328,33 +328,28 @@ def jpeg(marker: int, rows: int, columns: int, after: bytes = b"") -> bytes:
     )
 
 
-def jpeg_2000(side: int, tile: int, components: int = 1) -> bytes:
+def jpeg_2000(
+    side: int, tile: int = 0, components: int = 1, layers: int = 1, precinct: int = 15
+) -> bytes:
+    """A code stream with one tile's data, which are none; precincts of 2**precinct pixels."""
+    tile = tile or side
     size = struct.pack(">H8IH", 0, side, side, 0, 0, tile, tile, 0, 0, components)
     size += b"\x0f\x01\x01" * components
-    coding = struct.pack(">H10B", 12, 0, 0, 0, 1, 0, 5, 4, 4, 0, 1)
-    steps = struct.pack(">H17B", 19, 0x40, *[0x48] * 16)
-    tile_part = struct.pack(">HHIBB", 10, 0, 0, 0, 1)
-    return (
-        b"\xff\x4f\xff\x51"
-        + struct.pack(">H", len(size) + 2)
-        + size
-        + b"\xff\x52"
-        + coding
-        + b"\xff\x5c"
-        + steps
-        + b"\xff\x90"
-        + tile_part
-        + b"\xff\x93"
-        + bytes(40)
-        + b"\xff\xd9"
-    )
+    coding = struct.pack(">BBHB5B", 1, 0, layers, 0, 5, 4, 4, 0, 1)
+    coding += bytes([precinct << 4 | precinct] * 6)
+    steps = bytes([0x40, *[0x48] * 16])
+
+    def segment(marker: int, content: bytes) -> bytes:
+        return struct.pack(">BBH", 0xFF, marker, len(content) + 2) + content
+
+    head = segment(0x51, size) + segment(0x52, coding) + segment(0x5C, steps)
+    part = segment(0x90, struct.pack(">HIBB", 0, 0, 0, 1))
+    return b"\xff\x4f" + head + part + b"\xff\x93" + bytes(200) + b"\xff\xd9"
 
 
 STREAMS = {
-    "rle": (
-        RLE,
-        lambda side: struct.pack("<16I", 2, 64, 66, *[0] * 13) + b"\x81\0" * 2,
-    ),
+    "rle": (RLE, lambda _: struct.pack("<16I", 2, 64, 66, *[0] * 13) + b"\x81\0" * 2),
+    "rle-segments": (RLE, lambda _: struct.pack("<16I", CLAIM, *[64] * 15)),
     "jpeg": (JPEG, lambda side: jpeg(0xC0, side, side)),
     "jpeg-late-rows": (
         JPEG,
@@ -362,20 +357,31 @@ STREAMS = {
     ),
     "jpeg-lossless": (JPEG_LOSSLESS, lambda side: jpeg(0xC3, side, side)),
     "jpeg-ls": (JPEG_LS, lambda side: jpeg(0xF7, side, side)),
-    "jpeg-2000": (JPEG_2000, lambda side: jpeg_2000(side, side)),
-    "jpeg-2000-tiles": (JPEG_2000, lambda side: jpeg_2000(side, max(1, side // 255))),
-    "jpeg-2000-components": (JPEG_2000, lambda side: jpeg_2000(side, side, 16_384)),
+    "jpeg-2000": (JPEG_2000, jpeg_2000),
+    "jpeg-2000-tiles": (JPEG_2000, lambda side: jpeg_2000(side, side // 250)),
+    "jpeg-2000-components": (
+        JPEG_2000,
+        lambda side: jpeg_2000(side, components=16_384),
+    ),
+    "jpeg-2000-layers": (JPEG_2000, lambda side: jpeg_2000(side, layers=65_535)),
+    "jpeg-2000-precincts": (JPEG_2000, lambda side: jpeg_2000(side, precinct=1)),
+    "jpeg-2000-both": (
+        JPEG_2000,
+        lambda side: jpeg_2000(side, layers=65_535, precinct=1),
+    ),
 }
 
 
-@pytest.mark.parametrize("side", [2048, 4096, 65_535])
+@pytest.mark.parametrize(
+    ("side", "count"), [(512, 3), (1024, 3), (2048, 2), (4096, 100), (65_535, 100)]
+)
 @pytest.mark.parametrize("stream", STREAMS)
-def test_compressed_claims_are_held_against_the_bytes(tmp_path, stream, side):
-    """65,535 x 65,535 pixels, and sizes that could be, in a hundred small files."""
+def test_compressed_claims_are_held_against_the_bytes(tmp_path, stream, side, count):
+    """65,535 x 65,535 pixels, and sizes that could be, in a few hundred bytes a file."""
     syntax, content = STREAMS[stream]
     bits = 8 if stream.startswith("jpeg") and "2000" not in stream else 16
     files = []
-    for n in range(100):
+    for n in range(count):
         image = Image(n, syntax).size(side, side).pieces(content(side))
         image.number(0x100, bits).number(0x101, bits).number(0x102, bits - 1)
         files.append(image.file())

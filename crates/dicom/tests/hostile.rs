@@ -4,7 +4,7 @@
 
 mod common;
 
-use bonemesh_dicom::{find_series, read_series};
+use bonemesh_dicom::{DicomError, find_series, read_series};
 use bonemesh_task::Task;
 use common::{Image, file, folder, scan};
 use dicom_core::VR;
@@ -140,4 +140,92 @@ fn positions_beyond_all_reason_give_no_endless_volume() {
     Image::new(0).position([1e300, 1e300, -1e300]).write(&far);
     try_to_read(folder.path());
     assert!(file(folder.path(), 4, 0).exists());
+}
+
+#[test]
+fn files_that_change_between_scan_and_read_are_an_error() {
+    type Change = fn(&std::path::Path);
+    let changes: [(&str, Change); 5] = [
+        ("gone", |path| std::fs::remove_file(path).unwrap()),
+        ("empty", |path| std::fs::write(path, []).unwrap()),
+        ("shorter", |path| {
+            let file = std::fs::File::options().write(true).open(path).unwrap();
+            file.set_len(file.metadata().unwrap().len() - 10).unwrap();
+        }),
+        ("other bytes", |path| {
+            let length = std::fs::metadata(path).unwrap().len();
+            std::fs::write(path, vec![0xff; length as usize]).unwrap();
+        }),
+        ("a folder", |path| {
+            std::fs::remove_file(path).unwrap();
+            std::fs::create_dir(path).unwrap();
+        }),
+    ];
+    for syntax in [
+        uids::EXPLICIT_VR_LITTLE_ENDIAN,
+        uids::DEFLATED_EXPLICIT_VR_LITTLE_ENDIAN,
+    ] {
+        for (name, change) in changes {
+            let folder = folder(4, |_, mut image| {
+                image.syntax = syntax;
+                image
+            });
+            let scan = scan(folder.path());
+            let series = &scan.series[0];
+            for path in &series.files[1..] {
+                change(path);
+            }
+            let result = read_series(series, &Task::default());
+            let is_readable = name == "other bytes" && syntax == uids::EXPLICIT_VR_LITTLE_ENDIAN;
+            match result {
+                Ok(_) => assert!(is_readable, "{name} {syntax}"),
+                Err(error) => assert!(
+                    matches!(error, DicomError::Unreadable { readable: 1, .. }),
+                    "{name} {syntax}: {error}"
+                ),
+            }
+        }
+    }
+}
+
+#[test]
+fn numbers_that_no_scan_has_are_named() {
+    for (tag, text, says) in [
+        (tags::PIXEL_SPACING, "1e300\\1", "1e300"),
+        (tags::PIXEL_SPACING, "1e-320\\1", "1e-320"),
+        (tags::PIXEL_SPACING, "-1\\1", "-1 x 1 mm"),
+        (tags::PIXEL_SPACING, "nan\\nan", "no pixel spacing"),
+        (tags::IMAGE_POSITION_PATIENT, "0\\0\\1e300", "kilometre"),
+        (tags::IMAGE_POSITION_PATIENT, "inf\\0\\0", "no position"),
+        (tags::RESCALE_SLOPE, "1e300", "1e300"),
+        (tags::RESCALE_SLOPE, "0", "slope 0"),
+        (tags::RESCALE_INTERCEPT, "-1e300", "-1e300"),
+    ] {
+        let folder = folder(3, |k, image| {
+            if k == 1 {
+                image.text(tag, VR::DS, text)
+            } else {
+                image
+            }
+        });
+        let scan = scan(folder.path());
+        assert_eq!(scan.left_out.len(), 1, "{text}");
+        let reason = &scan.left_out[0].reason;
+        assert!(reason.contains(says), "{reason} does not say {says}");
+    }
+}
+
+#[test]
+fn a_long_description_is_cut_and_a_long_number_refused() {
+    let long = "1".repeat(60_000);
+    let described = folder(2, |_, image| {
+        image.text(tags::SERIES_DESCRIPTION, VR::UT, &long)
+    });
+    let scan = scan(described.path());
+    assert_eq!(scan.series[0].description.len(), 1024);
+    let placed = folder(2, |_, image| {
+        image.text(tags::SLICE_LOCATION, VR::UT, &long)
+    });
+    let error = find_series(placed.path(), &Task::default()).unwrap_err();
+    assert!(error.to_string().contains("far too long"), "{error}");
 }
