@@ -1,5 +1,7 @@
 """Times `bonemesh render` beside the published method, run by run in turn, and writes a table.
 
+Its reading is timed beside SimpleITK's series reader, in the same runs.
+
 usage: bench.py BONEMESH OUT_DIR RUNS HU NAME=DICOM_DIR...
 
 Whole processes, folder to STL; peak memory is the operating system's own figure of each process.
@@ -15,6 +17,7 @@ import tempfile
 from pathlib import Path
 
 PEER = Path(__file__).with_name("published_method.py")
+READER = Path(__file__).with_name("simpleitk_reading.py")
 STEPS = [
     "read",
     "edges",
@@ -41,8 +44,8 @@ def run(command: list[str]) -> dict:
 
 
 def measure(bonemesh: str, folder: str, hu: str, runs: int) -> dict[str, list[dict]]:
-    """Both programs in turn, `runs` times."""
-    found: dict[str, list[dict]] = {"bonemesh": [], "published": []}
+    """All programs in turn, `runs` times."""
+    found: dict[str, list[dict]] = {"bonemesh": [], "published": [], "simpleitk": []}
     with tempfile.TemporaryDirectory() as scratch:
         for _ in range(runs):
             ours = [
@@ -59,6 +62,7 @@ def measure(bonemesh: str, folder: str, hu: str, runs: int) -> dict[str, list[di
             found["bonemesh"].append(run([*ours, f"{scratch}/ours.stl"]))
             peer = [sys.executable, str(PEER), folder, hu, f"{scratch}/peer.stl"]
             found["published"].append(run(peer))
+            found["simpleitk"].append(run([sys.executable, str(READER), folder]))
     return found
 
 
@@ -97,6 +101,18 @@ def table(name: str, found: dict[str, list[dict]]) -> str:
     lines.append(
         f"| watertight | {ours[0]['watertight']} | {peer[0]['watertight']} | |"
     )
+    reader = found["simpleitk"]
+    lines += [
+        "",
+        "| reading the series | Bonemesh | SimpleITK | ratio |",
+        "|---|---|---|---|",
+    ]
+    for step, of_reader in [
+        ("files found and decoded", "read"),
+        ("SimpleITK's decoding alone", "decode"),
+    ]:
+        seconds = median(ours, "seconds", "read"), median(reader, "seconds", of_reader)
+        lines.append(row(step, *seconds, "s"))
     return "\n".join(lines) + "\n"
 
 
