@@ -11,7 +11,7 @@ use dicom_dictionary_std::uids;
 use dicom_encoding::adapters::{PixelDataObject, RawPixelData};
 use dicom_encoding::transfer_syntax::{Codec, TransferSyntax};
 
-use crate::codestream::{Declared, Process, declared};
+use crate::codestream::{Declared, Process, declared, repair_scan};
 use crate::error::FileError;
 use crate::file::syntax as find_syntax;
 use crate::header::Layout;
@@ -89,6 +89,9 @@ fn code_stream(
     let width = layout.bits_allocated as usize / 8;
     // The decoders of JPEG and JPEG-LS give cells as small as the samples allow.
     let narrow = declared.bits.div_ceil(8) * 8;
+    if declared.process == Process::Dct {
+        repair_scan(&mut frame);
+    }
     let mut cells = match declared.process {
         Process::Dct if declared.bits > 8 => {
             let samples = jpeg_12::decode(&frame, layout.rows, layout.columns)?;

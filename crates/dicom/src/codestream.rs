@@ -38,6 +38,9 @@ const JP2: [u8; 8] = [0, 0, 0, 12, b'j', b'P', b' ', b' '];
 /// In how many bytes the codestream of a JPEG 2000 file begins.
 const JP2_BOXES: usize = 1024;
 
+/// Marker of the segment before the entropy-coded data of a JPEG.
+const START_OF_SCAN: u8 = 0xda;
+
 /// Reads what the codestream declares; `None` where it declares nothing that makes sense.
 pub(crate) fn declared(bytes: &[u8]) -> Option<Declared> {
     if bytes.starts_with(&JP2) {
@@ -85,6 +88,34 @@ fn jpeg(bytes: &[u8]) -> Option<Declared> {
     }
 }
 
+/// Puts right the scan of a sequential JPEG, which always has all 64 coefficients whole (ITU
+/// T.81 B.2.3): some writers leave the bytes that say so empty, and decoders complain.
+///
+/// Only of the first scan; an image of one component has one.
+pub(crate) fn repair_scan(jpeg: &mut [u8]) {
+    let mut at = 2;
+    let mut is_sequential = false;
+    while let Some(&[0xff, marker]) = jpeg.get(at..at + 2) {
+        let Some(length) = number(jpeg, at + 2, 2) else {
+            return;
+        };
+        let end = at + 2 + length as usize;
+        match marker {
+            0xff => at += 1,
+            0xc0 | 0xc1 => (is_sequential, at) = (true, end),
+            START_OF_SCAN => {
+                // A component, its tables and these three bytes at least.
+                if let (true, 8.., Some(last)) = (is_sequential, length, jpeg.get_mut(end - 3..end))
+                {
+                    last.copy_from_slice(&[0, 63, 0]);
+                }
+                return;
+            }
+            _ => at = end,
+        }
+    }
+}
+
 /// JPEG 2000: the SIZ segment (ITU T.800 A.5.1).
 fn jpeg_2000(bytes: &[u8]) -> Option<Declared> {
     if !bytes.starts_with(&JPEG_2000) {
@@ -116,6 +147,28 @@ mod tests {
             process: Process::Lossless,
         };
         assert_eq!(declared(&bytes), Some(expected));
+    }
+
+    #[test]
+    fn only_the_scan_of_a_sequential_jpeg_is_put_right() {
+        let jpeg = |frame: u8| {
+            let mut bytes = vec![0xff, 0xd8, 0xff, 0xff, frame, 0, 3, 12];
+            bytes.extend([0xff, 0xda, 0, 8, 1, 1, 0, 0, 0, 0, 9, 9]);
+            bytes
+        };
+        let mut sequential = jpeg(0xc1);
+        repair_scan(&mut sequential);
+        assert_eq!(sequential[8..], [0xff, 0xda, 0, 8, 1, 1, 0, 0, 63, 0, 9, 9]);
+        let mut progressive = jpeg(0xc2);
+        repair_scan(&mut progressive);
+        assert_eq!(progressive, jpeg(0xc2));
+        for end in 0..18 {
+            let mut broken_off = jpeg(0xc1);
+            broken_off.truncate(end);
+            let before = broken_off.clone();
+            repair_scan(&mut broken_off);
+            assert_eq!(broken_off, before);
+        }
     }
 
     #[test]
