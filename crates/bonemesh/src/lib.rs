@@ -31,6 +31,7 @@
 pub mod cli;
 mod error;
 mod memory;
+mod panics;
 mod region;
 mod render;
 mod report;
@@ -38,6 +39,7 @@ mod settings;
 mod source;
 
 pub use error::Error;
+pub use panics::hush_foreign_panics;
 pub use region::{RegionRequest, RegionResult, select_roi};
 pub use render::{Rendered, mesh_cloud, point_cloud, render, render_volume};
 pub use report::{CheckReport, RegionReport, RenderReport, Seconds, check};

@@ -3,7 +3,7 @@
 //! 1. [`alike`]: same series, image type and size; orientation and pixel spacing within rounding.
 //! 2. [`by_acquisition`]: acquisitions stay together where they make one stack (scanners that
 //!    step through the body count every rotation as an acquisition), and apart where they overlap.
-//! 3. [`apart`]: slices at the same place are dropped if their pixels are the same, else each
+//! 3. [`apart`](crate::same_place::apart): slices at the same place are dropped if their pixels are the same, else each
 //!    copy goes to a stack of its own.
 //! 4. [`without_gaps`]: a stack ends where the next slice is too far away to be a neighbour.
 
@@ -11,9 +11,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use bonemesh_task::{Cancelled, Task};
-use rayon::prelude::*;
 
 use crate::header::{Frame, Header};
+use crate::same_place::{SAME_PLACE_MM, apart};
 use crate::slice::Slice;
 use crate::vector::{cross, dot};
 
@@ -22,9 +22,6 @@ const SAME_ORIENTATION: f64 = 1e-3;
 
 /// Largest relative difference of two spacings that is rounding.
 const SAME_SPACING: f64 = 1e-3;
-
-/// Slices closer than this (mm) are at the same place.
-const SAME_PLACE_MM: f64 = 1e-3;
 
 /// Gap, in typical steps, up to which two acquisitions are one stack.
 const MAX_ACQUISITION_GAP: f64 = 3.0;
@@ -47,6 +44,8 @@ pub(crate) struct Stack {
     pub(crate) notes: Vec<String>,
     /// Copies of slices that are not needed.
     pub(crate) copies: Vec<Slice>,
+    /// Slices that nobody looked at: there are too many at their place.
+    pub(crate) surplus: Vec<Slice>,
 }
 
 /// Groups the frames of all headers into stacks.
@@ -151,78 +150,6 @@ fn median(values: &[f64]) -> Option<f64> {
     sorted.get(sorted.len() / 2).copied()
 }
 
-/// Slices at the same place: one stays, its copies go, different ones make further stacks.
-fn apart(slices: &[Slice], task: &Task) -> Result<Vec<Stack>, Cancelled> {
-    let places: Vec<&[Slice]> = slices
-        .chunk_by(|a, b| b.along_mm - a.along_mm <= SAME_PLACE_MM)
-        .collect();
-    let kept = places
-        .into_par_iter()
-        .map(|place| different(place, task))
-        .collect::<Result<Vec<_>, Cancelled>>()?;
-    let layers = kept.iter().map(|(k, _)| k.len()).max().unwrap_or(0);
-    let copies: Vec<Slice> = kept.iter().flat_map(|(_, c)| c.clone()).collect();
-    let mut notes = Vec::new();
-    if !copies.is_empty() {
-        let names: Vec<String> = copies.iter().take(3).map(Slice::name).collect();
-        let more = if copies.len() > 3 { ", ..." } else { "" };
-        notes.push(format!(
-            "{} {} at the place of another and the same or unreadable, dropped ({}{more})",
-            copies.len(),
-            if copies.len() == 1 {
-                "slice is"
-            } else {
-                "slices are"
-            },
-            names.join(", ")
-        ));
-    }
-    let mut stacks: Vec<Stack> = (0..layers)
-        .map(|layer| Stack {
-            slices: kept
-                .iter()
-                .filter_map(|(k, _)| k.get(layer).cloned())
-                .collect(),
-            notes: notes.clone(),
-            copies: Vec::new(),
-        })
-        .collect();
-    if layers > 1 {
-        for (layer, stack) in stacks.iter_mut().enumerate() {
-            stack.notes.push(format!(
-                "the series has different slices at the same places; this is image {} of {layers} there",
-                layer + 1
-            ));
-        }
-    }
-    if let Some(first) = stacks.first_mut() {
-        first.copies = copies;
-    }
-    Ok(stacks)
-}
-
-/// The slices of one place that differ, and those that are copies or cannot be read.
-fn different(place: &[Slice], task: &Task) -> Result<(Vec<Slice>, Vec<Slice>), Cancelled> {
-    if place.len() == 1 {
-        return Ok((place.to_vec(), Vec::new()));
-    }
-    let mut kept: Vec<(Slice, Vec<f32>)> = Vec::new();
-    let mut others = Vec::new();
-    for slice in place {
-        task.check()?;
-        match slice.decode_whole() {
-            Ok(hu) if kept.iter().all(|(_, k)| *k != hu) => kept.push((slice.clone(), hu)),
-            _ => others.push(slice.clone()),
-        }
-    }
-    let mut kept: Vec<Slice> = kept.into_iter().map(|(s, _)| s).collect();
-    if kept.is_empty() {
-        // Reading says what is wrong with it.
-        kept.push(others.remove(0));
-    }
-    Ok((kept, others))
-}
-
 fn without_gaps(stack: Stack) -> Vec<Stack> {
     let steps = steps(&stack.slices);
     let largest = median(&steps).map_or(f64::INFINITY, |m| m * MAX_GAP);
@@ -238,16 +165,16 @@ fn without_gaps(stack: Stack) -> Vec<Stack> {
         .chunk_by(|a, b| b.along_mm - a.along_mm <= largest)
         .enumerate()
         .map(|(i, part)| {
+            // Told once, with the first part.
+            let only_first =
+                |slices: &[Slice]| slices[..if i == 0 { slices.len() } else { 0 }].to_vec();
             let mut notes = stack.notes.clone();
             notes.push("the series has a wide gap; this is one side of it".to_owned());
             Stack {
                 slices: part.to_vec(),
                 notes,
-                copies: if i == 0 {
-                    stack.copies.clone()
-                } else {
-                    Vec::new()
-                },
+                copies: only_first(&stack.copies),
+                surplus: only_first(&stack.surplus),
             }
         })
         .collect()

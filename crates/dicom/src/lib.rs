@@ -53,6 +53,7 @@ mod plausible;
 mod read;
 mod report;
 mod rle;
+mod same_place;
 mod scan;
 mod series;
 mod slice;

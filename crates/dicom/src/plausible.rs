@@ -21,6 +21,10 @@ const MAX_FRAME_RATIO: u64 = 64;
 /// reach 500, as their headers alone have a kilobyte.
 const MAX_RATIO: u64 = 1024;
 
+/// Least compressed bytes of one of many frames: its place among the functional groups, the header
+/// of its item and of its code stream take more.
+const MIN_FRAME: u64 = 16;
+
 /// Most bytes that are inflated for all frames of a deflated file, each of which begins anew:
 /// a minute or two.
 const MAX_INFLATED: u64 = 1 << 36;
@@ -42,7 +46,8 @@ pub(crate) fn check(layout: &Layout, storage: &Storage, stored: u64) -> Result<(
         return Ok(());
     }
     let is_paid = frame <= ORDINARY || frame / MAX_FRAME_RATIO * frames <= stored;
-    if !is_paid || !fits(frame * frames, stored) {
+    let is_enough = frames == 1 || frames * MIN_FRAME <= stored;
+    if !is_enough || !is_paid || !fits(frame * frames, stored) {
         return Err(impossible(&format!("cannot be in {stored} bytes")));
     }
     if is_deflated && frames * frames / 2 * frame > MAX_INFLATED {

@@ -247,6 +247,10 @@ fn add(
         let reason = "the same slice is there already";
         left_out.push(LeftOut::new(&copy.header.path, &reason));
     }
+    for surplus in &stack.surplus {
+        let reason = "too many slices at one place";
+        left_out.push(LeftOut::new(&surplus.header.path, &reason));
+    }
     let files: Vec<PathBuf> = stack.slices.iter().map(|s| s.header.path.clone()).collect();
     if files.len() < 2 {
         let reason = "a single slice; a volume needs at least 2 of one orientation and size";

@@ -49,6 +49,7 @@ impl Series {
             slices,
             notes: mut warnings,
             copies,
+            ..
         } = stack;
         let along: Vec<f64> = slices.iter().map(|s| s.along_mm).collect();
         let (grid, evenness) = Grid::new(&along);

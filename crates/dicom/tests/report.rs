@@ -120,3 +120,24 @@ fn magnetic_resonance_and_positron_series_are_named_and_refused() {
         assert!(error.to_string().contains(&expected), "{error}");
     }
 }
+
+#[test]
+fn a_crowd_of_slices_at_one_place_is_not_looked_through() {
+    let folder = folder(3, |_, image| image);
+    for n in 0..300 {
+        let image = Image::new(1).pixels(|j, i| (1000 + 10 * (n % 2) + j + i) as u16);
+        image.write(&folder.path().join(format!("crowd{n:03}")));
+    }
+    let scan = scan(folder.path());
+    assert_eq!(scan.series[0].slices_found, 3);
+    let reason = |wanted: &str| {
+        let reasons = scan.left_out.iter().map(|l| l.reason.as_str());
+        reasons.filter(|r| *r == wanted).count()
+    };
+    assert_eq!(reason("too many slices at one place"), 301 - 256);
+    let notes = &scan.series[0].warnings;
+    assert!(
+        notes.iter().any(|n| n.contains("45 were left out unseen")),
+        "{notes:?}"
+    );
+}

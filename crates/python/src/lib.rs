@@ -62,6 +62,7 @@ mod _native {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        bonemesh::hush_foreign_panics();
         module.add("__version__", bonemesh::VERSION)?;
         crate::errors::add_to(module)
     }

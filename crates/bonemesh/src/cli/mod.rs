@@ -14,6 +14,7 @@ use std::ffi::OsString;
 use bonemesh_task::Task;
 use clap::Parser;
 
+use crate::panics::hush_foreign_panics;
 use arguments::Arguments;
 
 /// Exit code for a failure that a message explains.
@@ -33,6 +34,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
             return if message.use_stderr() { USAGE } else { 0 };
         }
     };
+    hush_foreign_panics();
     let task = Task::default();
     let switch = task.cancel().clone();
     // The first signal asks the work to stop; a second one, for work that waits for a pipe or a
