@@ -8,7 +8,7 @@
 //! Slices are ordered by their positions along the normal of their plane, never by name or
 //! number. The volume's map from voxels to the patient holds any orientation and a tilted
 //! gantry's shear. Missing slices are filled and uneven ones resampled, linearly along the
-//! stack, and [`Series::warnings`] says so. Rescale, bit depth, sign and padding are honoured
+//! stack, and [`SeriesReport::warnings`] says so. Rescale, bit depth, sign and padding are honoured
 //! slice by slice.
 //!
 //! Limits: modality CT (or none given), one sample a pixel. Transfer syntaxes: uncompressed,
