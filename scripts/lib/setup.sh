@@ -17,17 +17,36 @@ need_rust() {
         fail "rustc $have is too old, $rust_minimum or newer is needed; $remedy"
 }
 
+# missing_packages PACKAGE...: prints the Debian packages that are not installed.
+missing_packages() {
+    command -v dpkg-query >/dev/null || return 0
+    local package
+    for package in "$@"; do
+        dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || echo "$package"
+    done
+}
+
+install_packages() {
+    say "installing $*"
+    apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends "$@" >/dev/null
+}
+
 # need_packages PACKAGE...: Debian packages, installed when this is root and they are missing.
 need_packages() {
-    command -v dpkg-query >/dev/null || return 0
-    local missing=() package
-    for package in "$@"; do
-        dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
-    done
-    [ ${#missing[@]} -eq 0 ] && return 0
-    [ "$(id -u)" = 0 ] || fail "missing packages; run: sudo apt-get install ${missing[*]}"
-    say "installing ${missing[*]}"
-    apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends "${missing[@]}" >/dev/null
+    local missing
+    missing=$(missing_packages "$@" | xargs)
+    [ -z "$missing" ] && return 0
+    [ "$(id -u)" = 0 ] || fail "missing packages; run: sudo apt-get install $missing"
+    install_packages $missing
+}
+
+# want_packages PACKAGE...: the same for those that only some tests need, which are skipped without.
+want_packages() {
+    local missing
+    missing=$(missing_packages "$@" | xargs)
+    [ -z "$missing" ] && return 0
+    if [ "$(id -u)" = 0 ] && install_packages $missing; then return 0; fi
+    say "skipped: tests that need $missing (run: sudo apt-get install $missing)"
 }
 
 # CMake, which builds the decoders that are C and C++ (CharLS, libjpeg-turbo).
