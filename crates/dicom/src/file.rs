@@ -5,7 +5,7 @@ use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use dicom_dictionary_std::{tags, uids};
-use dicom_encoding::transfer_syntax::{Codec, TransferSyntax, TransferSyntaxIndex};
+use dicom_encoding::transfer_syntax::{Codec, Endianness, TransferSyntax, TransferSyntaxIndex};
 use dicom_transfer_syntax_registry::TransferSyntaxRegistry;
 
 use crate::elements::Elements;
@@ -63,7 +63,8 @@ pub(crate) fn parse(path: &Path) -> Result<Parsed, FileError> {
             stored: stored - start,
         });
     }
-    let (elements, _) = Elements::read(&mut file, syntax, start, size, None)?;
+    let form = form(&mut file, syntax, start)?;
+    let (elements, _) = Elements::read(&mut file, form, start, size, None)?;
     Ok(Parsed {
         elements,
         syntax,
@@ -71,6 +72,31 @@ pub(crate) fn parse(path: &Path) -> Result<Parsed, FileError> {
         size,
         stored: size - start,
     })
+}
+
+/// The form in which the elements are really written, and the file back at `start`.
+///
+/// Some writers copy elements of implicit VR under a transfer syntax that says explicit, or the
+/// other way round: what stands behind the first tag, a VR or a length, does not lie.
+fn form(
+    file: &mut BufReader<File>,
+    syntax: &'static TransferSyntax,
+    start: u64,
+) -> Result<&'static TransferSyntax, FileError> {
+    let mut first = Vec::with_capacity(8);
+    file.by_ref().take(8).read_to_end(&mut first)?;
+    file.seek(SeekFrom::Start(start))?;
+    let is_little = syntax.endianness() == Endianness::Little;
+    let written = bare_syntax(&first).filter(|_| is_little);
+    let said = if syntax.uid() == uids::IMPLICIT_VR_LITTLE_ENDIAN {
+        uids::IMPLICIT_VR_LITTLE_ENDIAN
+    } else {
+        uids::EXPLICIT_VR_LITTLE_ENDIAN
+    };
+    match written {
+        Some(uid) if uid != said => self::syntax(uid),
+        _ => Ok(syntax),
+    }
 }
 
 /// `length` bytes from `begin` of the data set of a deflated file, which begins at `start`.

@@ -186,6 +186,10 @@ fn layout(e: &Elements) -> Result<Layout, FileError> {
     if e.u16(tags::SAMPLES_PER_PIXEL).unwrap_or(1) != 1 {
         return Err(no_image("a colour picture"));
     }
+    // Numbers of colours are no measurements.
+    if e.text(tags::PHOTOMETRIC_INTERPRETATION).as_deref() == Some("PALETTE COLOR") {
+        return Err(no_image("a colour picture"));
+    }
     let bits_allocated = u32::from(number(tags::BITS_ALLOCATED, "no bits allocated")?);
     let bits_stored = e.u16(tags::BITS_STORED).map_or(bits_allocated, u32::from);
     let high_bit = e

@@ -213,6 +213,52 @@ fn a_damaged_compressed_slice_is_named_and_filled() {
 }
 
 #[test]
+fn elements_written_otherwise_than_the_transfer_syntax_says_are_read() {
+    let truth = read(folder(3, |_, image| image).path()).0;
+    for (written, said) in [
+        (
+            uids::IMPLICIT_VR_LITTLE_ENDIAN,
+            uids::EXPLICIT_VR_LITTLE_ENDIAN,
+        ),
+        (
+            uids::EXPLICIT_VR_LITTLE_ENDIAN,
+            uids::IMPLICIT_VR_LITTLE_ENDIAN,
+        ),
+    ] {
+        let folder = folder(3, |_, mut image| {
+            image.syntax = written;
+            image
+        });
+        for k in 0..3 {
+            let path = common::file(folder.path(), 3, k);
+            let mut bytes = std::fs::read(&path).unwrap();
+            let (from, to) = (transfer_syntax(written), transfer_syntax(said));
+            let at = bytes.windows(from.len()).position(|w| w == from).unwrap();
+            bytes.splice(at..at + from.len(), to);
+            std::fs::write(path, bytes).unwrap();
+        }
+        assert_eq!(read(folder.path()).0, truth, "{said}");
+    }
+}
+
+/// The element (0002,0010) as it stands in a file.
+fn transfer_syntax(uid: &str) -> Vec<u8> {
+    let mut value = uid.as_bytes().to_vec();
+    value.resize(value.len().next_multiple_of(2), 0);
+    let length = (value.len() as u16).to_le_bytes();
+    [&[2, 0, 0x10, 0, b'U', b'I'], &length[..], &value].concat()
+}
+
+#[test]
+fn numbers_of_colours_are_no_hounsfield_units() {
+    let folder = folder(3, |_, image| {
+        image.text(tags::PHOTOMETRIC_INTERPRETATION, VR::CS, "PALETTE COLOR")
+    });
+    let message = common::error(folder.path()).to_string();
+    assert!(message.contains("a colour picture"), "{message}");
+}
+
+#[test]
 fn a_frame_that_declares_another_size_is_refused() {
     let jpeg = vec![
         0xff, 0xd8, 0xff, 0xc3, 0, 11, 16, 0xff, 0xff, 0xff, 0xff, 1, 1, 0x11, 0,
