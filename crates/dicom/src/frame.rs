@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
+use std::sync::OnceLock;
 
 use dicom_encoding::transfer_syntax::{Codec, Endianness, TransferSyntax};
 
@@ -40,9 +41,9 @@ pub(crate) fn read_frame(
     let mut file = File::open(path)?;
     match (syntax.codec(), storage.pixels.length) {
         (Codec::Dataset(_), Some(_)) => {
-            let length = layout.frame_bytes();
-            let begin = storage.pixels.offset + length * index as u64;
-            inflated_part(file, syntax, storage.start, begin, length)
+            let length = layout.frame_bytes() as usize;
+            let all = inflated(file, syntax, storage, layout)?;
+            Ok(all[length * index..][..length].to_vec())
         }
         (Codec::EncapsulatedPixelData(..), None) => {
             let mut file = BufReader::with_capacity(BUFFER, file);
@@ -63,12 +64,32 @@ fn indexed<'s, S: Read + Seek>(
     source: &mut S,
     storage: &'s Storage,
 ) -> Result<&'s Index, FileError> {
-    if let Some(index) = storage.fragments.get() {
-        return Ok(index);
-    }
-    let index = Index::read(source, storage.pixels.offset, storage.frames)?;
-    // Several threads may have looked at once: all found the same.
-    Ok(storage.fragments.get_or_init(|| index))
+    let look = || Index::read(source, storage.pixels.offset, storage.frames);
+    once(&storage.fragments, look)
+}
+
+/// All frames of a deflated file, which can only be read from its beginning: once a file too.
+fn inflated<'s>(
+    file: File,
+    syntax: &TransferSyntax,
+    storage: &'s Storage,
+    layout: &Layout,
+) -> Result<&'s [u8], FileError> {
+    let (begin, length) = (
+        storage.pixels.offset,
+        layout.frame_bytes() * storage.frames as u64,
+    );
+    let inflate = || inflated_part(file, syntax, storage.start, begin, length);
+    once(&storage.inflated, inflate).map(Vec::as_slice)
+}
+
+/// What `make` gives, or why not, made by the first who asks.
+fn once<T>(
+    place: &OnceLock<Result<T, String>>,
+    make: impl FnOnce() -> Result<T, FileError>,
+) -> Result<&T, FileError> {
+    let made = place.get_or_init(|| make().map_err(|e| e.to_string()));
+    made.as_ref().map_err(|why| FileError::Codec(why.clone()))
 }
 
 fn native<S: Read + Seek>(

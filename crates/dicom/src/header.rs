@@ -56,8 +56,10 @@ pub(crate) struct Storage {
     pub(crate) pixels: PixelPlace,
     /// Frames in the file.
     pub(crate) frames: usize,
-    /// Where the fragments of compressed frames lie, once one has been read.
-    pub(crate) fragments: OnceLock<Index>,
+    /// Where the fragments of compressed frames lie, or why nobody knows, once one was asked for.
+    pub(crate) fragments: OnceLock<Result<Index, String>>,
+    /// All frames of a deflated file, once one was asked for.
+    pub(crate) inflated: OnceLock<Result<Vec<u8>, String>>,
 }
 
 /// One frame's place, and the way from stored values to Hounsfield units.
@@ -155,6 +157,7 @@ fn storage(parsed: &Parsed, pixels: PixelPlace, frames: usize) -> Storage {
         pixels,
         frames,
         fragments: OnceLock::new(),
+        inflated: OnceLock::new(),
     }
 }
 

@@ -14,6 +14,9 @@ const MAX_PRECINCTS: u64 = 1 << 14;
 /// Code blocks: as many as 8192 x 8192 pixels in blocks of 32 x 32 have.
 const MAX_BLOCKS: u64 = 1 << 16;
 
+/// Quality layers: encoders offer some fifty. Each costs time for every precinct.
+const MAX_LAYERS: u64 = 256;
+
 /// Packets, of which there is one for each layer of each precinct: all are looked at.
 const MAX_PACKETS: u64 = 1 << 20;
 
@@ -178,6 +181,7 @@ impl Limits {
         // Every tile has at least one precinct for each resolution, and a code block.
         precincts = precincts.saturating_add(self.tiles.saturating_mul(u64::from(levels) + 1));
         at_most(precincts, 2 * MAX_PRECINCTS + MAX_TILES * 6, "precincts")?;
+        at_most(self.layers, MAX_LAYERS, "layers")?;
         at_most(
             precincts.saturating_mul(self.layers),
             MAX_PACKETS,
@@ -307,6 +311,11 @@ mod tests {
         assert!(!is_accepted(&Asked {
             precinct: 5,
             layers: u16::MAX,
+            ..USUAL
+        }));
+        // 47,865 of them kept a decoder busy for seconds.
+        assert!(!is_accepted(&Asked {
+            layers: 257,
             ..USUAL
         }));
         assert!(!is_accepted(&Asked {

@@ -25,9 +25,9 @@ const MAX_RATIO: u64 = 1024;
 /// of its item and of its code stream take more.
 const MIN_FRAME: u64 = 16;
 
-/// Most bytes that are inflated for all frames of a deflated file, each of which begins anew:
-/// a minute or two.
-const MAX_INFLATED: u64 = 1 << 36;
+/// Most bytes of all frames of a deflated file: they are held together, as none can be reached but
+/// through those before it.
+const MAX_INFLATED: u64 = 1 << 30;
 
 /// Whether slices of `bytes` in all can be in `stored` compressed bytes.
 pub(crate) fn fits(bytes: u64, stored: u64) -> bool {
@@ -50,8 +50,14 @@ pub(crate) fn check(layout: &Layout, storage: &Storage, stored: u64) -> Result<(
     if !is_enough || !is_paid || !fits(frame * frames, stored) {
         return Err(impossible(&format!("cannot be in {stored} bytes")));
     }
-    if is_deflated && frames * frames / 2 * frame > MAX_INFLATED {
-        return Err(impossible("deflated would take hours to read"));
+    if is_deflated && frames > 1 {
+        let all = frames * frame;
+        if all > MAX_INFLATED {
+            return Err(impossible("deflated in one file are too many"));
+        }
+        if all > ORDINARY && all / MAX_FRAME_RATIO > stored {
+            return Err(impossible(&format!("cannot be in {stored} bytes")));
+        }
     }
     Ok(())
 }
@@ -87,6 +93,7 @@ mod tests {
             },
             frames,
             fragments: OnceLock::new(),
+            inflated: OnceLock::new(),
         };
         check(&layout, &storage, stored).is_ok()
     }
@@ -94,8 +101,9 @@ mod tests {
     #[test]
     fn an_empty_slice_may_be_tiny_and_a_huge_one_not() {
         for uid in [uids::RLE_LOSSLESS, uids::JPEG2000_LOSSLESS, DEFLATED] {
+            let frames = if uid == DEFLATED { 30 } else { 300 };
             assert!(is_plausible(uid, 512, 1, 100));
-            assert!(is_plausible(uid, 512, 300, 300_000));
+            assert!(is_plausible(uid, 512, frames, 300_000));
             assert!(!is_plausible(uid, 512, 300, 30_000));
             assert!(is_plausible(uid, 8192, 1, 8 << 20));
             assert!(!is_plausible(uid, 8192, 1, 1 << 20));
@@ -104,8 +112,9 @@ mod tests {
     }
 
     #[test]
-    fn a_deflated_file_of_many_frames_is_not_inflated_again_and_again() {
-        assert!(is_plausible(DEFLATED, 512, 300, 1 << 30));
+    fn deflated_frames_that_are_held_together_are_paid_for() {
+        assert!(is_plausible(DEFLATED, 512, 300, 40 << 20));
+        assert!(!is_plausible(DEFLATED, 512, 300, 1 << 20));
         assert!(!is_plausible(DEFLATED, 512, 30_000, 1 << 40));
     }
 }

@@ -9,7 +9,7 @@ use bonemesh_task::Task;
 use common::{COLUMNS, Image, ROWS, assert_near, error, hu, read, scan, stored};
 use dicom_core::value::DataSetSequence;
 use dicom_core::{DataElement, PrimitiveValue, Tag, VR};
-use dicom_dictionary_std::tags;
+use dicom_dictionary_std::{tags, uids};
 use dicom_object::InMemDicomObject;
 
 /// A functional group: one macro with its values.
@@ -97,6 +97,22 @@ fn shuffled_frames_are_ordered_and_rescaled_each_by_its_own_groups() {
     }
     let place = volume.geometry().patient_from_voxel();
     assert_near(place.apply([2.0, 1.0, 3.0]), [-9.0, 20.75, 6.0]);
+}
+
+#[test]
+fn deflated_frames_are_those_of_the_plain_file() {
+    let [plain, deflated] = [
+        uids::EXPLICIT_VR_LITTLE_ENDIAN,
+        uids::DEFLATED_EXPLICIT_VR_LITTLE_ENDIAN,
+    ]
+    .map(|syntax| {
+        let folder = tempfile::tempdir().unwrap();
+        let mut image = enhanced(&[3, 0, 4, 1, 2]);
+        image.syntax = syntax;
+        image.write(&folder.path().join("all"));
+        read(folder.path()).0
+    });
+    assert_eq!(plain, deflated);
 }
 
 #[test]
