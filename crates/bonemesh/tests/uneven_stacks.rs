@@ -300,6 +300,25 @@ fn crooked_stacks_leave_the_surface_in_place() {
 }
 
 #[test]
+fn a_stack_centred_anew_halfway_keeps_its_bone_in_place() {
+    for shift in [12.0, -12.0] {
+        let anew = |k: usize| [if k < 28 { 0.0 } else { shift }, 0.0, 0.0];
+        let stack = Stack::regular(1.5, 0.0).moved(anew);
+        // One edge of the image was not scanned in all slices.
+        let scanned = |p: Point| p[0].abs() < 25.0;
+        let (fit, warnings) = stack.measured("centred anew", scanned);
+        assert!(
+            fit.distance_mm.unsigned < REGULAR.distance_mm.unsigned + 0.035,
+            "{fit:?}"
+        );
+        assert!(
+            warnings.len() == 1 && warnings[0].contains("up to 12.00 mm of their edge"),
+            "{warnings:?}"
+        );
+    }
+}
+
+#[test]
 fn rounding_in_the_tags_moves_nothing() {
     for noise in [5e-5, 4e-4] {
         let mut stack = Stack::regular(1.5, 20.0);

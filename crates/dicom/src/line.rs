@@ -5,13 +5,17 @@
 
 use crate::hounsfield::Voxel;
 use crate::slice::Slice;
-use crate::vector::{difference, dot, length, scaled};
+use crate::vector::{cross, difference, dot, length, scaled};
 
 /// Distance from the straight line, in pixels, up to which a stack is straight.
 const CROOKED: f64 = 0.5;
 
 /// Distance, in pixels, from which a slice of a crooked stack is moved: less is rounding.
 const MOVED: f64 = 0.1;
+
+/// Share of the strayed slices to which another line must bring a crooked stack to be preferred to
+/// an upright one: slices strewn about lie nearer to one slope or another by chance.
+const CLEARLY: f64 = 0.9;
 
 /// Where the first pixel of each slice should be.
 #[derive(Clone, Copy, Debug)]
@@ -26,8 +30,10 @@ pub(crate) struct Line {
 
 impl Line {
     /// The line of a stack: from the first slice to the last where all slices lie on it;
-    /// otherwise the one that as many slices as possible lie on, as Theil (1950) and Sen (1968)
-    /// draw it: through medians.
+    /// otherwise, of a few that may be meant, the one that most slices lie on or near.
+    ///
+    /// Slices that were moved all at once, as by centring the image anew, are no slope: most
+    /// neighbours still follow each other in the stack's own direction.
     pub(crate) fn of(slices: &[Slice]) -> Self {
         let (first, last) = (&slices[0], &slices[slices.len() - 1]);
         let straight = Self {
@@ -40,19 +46,44 @@ impl Line {
         if !slices.iter().any(is_beside) {
             return straight;
         }
-        let half = slices.len() / 2;
-        let ways = slices.iter().zip(&slices[half..]);
-        let per_mm = middle(&ways.map(|(a, b)| between(a, b)).collect::<Vec<_>>());
+        let neighbours = pairs(slices, 1);
+        let candidates = [
+            longest_run(slices, neighbours),
+            neighbours,
+            pairs(slices, slices.len() / 2),
+        ];
+        let upright = Self::towards(slices, upright(slices));
+        let mut best = (upright.strayed(slices), upright);
+        for per_mm in candidates {
+            let line = Self::towards(slices, per_mm);
+            let strayed = line.strayed(slices);
+            if strayed < best.0 * CLEARLY {
+                best = (strayed, line);
+            }
+        }
+        best.1
+    }
+
+    /// The line in a direction that goes through the middle of a crooked stack's slices.
+    fn towards(slices: &[Slice], per_mm: [f64; 3]) -> Self {
+        let anchor_mm = slices[0].along_mm;
         let start = |s: &Slice| {
-            let way = scaled(per_mm, s.along_mm - first.along_mm);
+            let way = scaled(per_mm, s.along_mm - anchor_mm);
             difference(s.place().position, way)
         };
         Self {
             anchor: middle(&slices.iter().map(start).collect::<Vec<_>>()),
+            anchor_mm,
             per_mm,
             is_straight: false,
-            ..straight
         }
+    }
+
+    /// How many slices lie beside the line: one on it counts 0, one far away 1 however far it is.
+    /// (A sum of distances would be smallest for a slope between two halves of a stack.)
+    fn strayed(&self, slices: &[Slice]) -> f64 {
+        let off = |s: &Slice| self.sideways_px(s).into_iter().fold(0.0, f64::max);
+        slices.iter().map(|s| off(s) / (off(s) + CROOKED)).sum()
     }
 
     /// The line at a place along the normal.
@@ -66,10 +97,20 @@ impl Line {
         self.per_mm
     }
 
-    /// How far beside the line the farthest slice lies (mm), if the stack is crooked.
-    pub(crate) fn crooked_mm(&self, slices: &[Slice]) -> Option<f64> {
-        let off = |s: &Slice| length(self.beside(s));
-        (!self.is_straight).then(|| slices.iter().map(off).fold(0.0, f64::max))
+    /// What a user should know if the stack is crooked.
+    pub(crate) fn note(&self, slices: &[Slice]) -> Option<String> {
+        if self.is_straight {
+            return None;
+        }
+        let farthest = |off: &dyn Fn(&Slice) -> f64| slices.iter().map(off).fold(0.0, f64::max);
+        let crooked_mm = farthest(&|s| length(self.beside(s)));
+        let cut_mm = farthest(&|s| {
+            let ([columns, rows], [dx, dy]) = (self.sideways_px(s), s.place().spacing);
+            (columns * dx).max(rows * dy)
+        });
+        Some(format!(
+            "slices are shifted sideways by up to {crooked_mm:.2} mm against a straight stack; moved to their places by linear interpolation, up to {cut_mm:.2} mm of their edge lie outside the volume"
+        ))
     }
 
     /// Moves the pixels of a slice that lies beside the line to where the line wants them.
@@ -101,6 +142,46 @@ impl Line {
 fn between(a: &Slice, b: &Slice) -> [f64; 3] {
     let way = difference(b.place().position, a.place().position);
     scaled(way, 1.0 / (b.along_mm - a.along_mm))
+}
+
+/// Way for each mm along the normal of a stack that stands upright on its slices.
+fn upright(slices: &[Slice]) -> [f64; 3] {
+    let [x, y] = slices[0].place().orientation;
+    let normal = cross(x, y);
+    // Slices ascend along the normal that counts, whichever side it is taken from.
+    let along = dot(normal, between(&slices[0], &slices[slices.len() - 1]));
+    scaled(normal, along.signum() / length(normal))
+}
+
+/// The middle of the ways from each slice to the one `apart` further; Theil (1950) and Sen (1968)
+/// draw lines through medians of slopes.
+fn pairs(slices: &[Slice], apart: usize) -> [f64; 3] {
+    let ways = slices.iter().zip(&slices[apart..]);
+    middle(&ways.map(|(a, b)| between(a, b)).collect::<Vec<_>>())
+}
+
+/// The way through the longest run of slices whose neighbours follow each other in a direction:
+/// over many slices, rounded positions weigh little.
+fn longest_run(slices: &[Slice], per_mm: [f64; 3]) -> [f64; 3] {
+    let follows = |a: &Slice, b: &Slice| {
+        let line = Line {
+            anchor: a.place().position,
+            anchor_mm: a.along_mm,
+            per_mm,
+            is_straight: false,
+        };
+        line.sideways_px(b).into_iter().all(|o| o <= CROOKED)
+    };
+    let mut longest: &[Slice] = &[];
+    for run in slices.chunk_by(follows) {
+        if run.len() > longest.len() {
+            longest = run;
+        }
+    }
+    match longest {
+        [first, .., last] => between(first, last),
+        _ => per_mm,
+    }
 }
 
 /// The one nearest to the median of each coordinate.

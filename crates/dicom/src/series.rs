@@ -10,7 +10,8 @@ use serde::Serialize;
 use crate::error::DicomError;
 use crate::frame::is_readable;
 use crate::group::Stack;
-use crate::header::Header;
+use crate::header::{Header, Placing};
+use crate::hounsfield::Known;
 use crate::line::Line;
 use crate::plausible;
 use crate::report::SeriesReport;
@@ -58,6 +59,7 @@ impl Series {
         }
         let line = Line::of(&slices);
         warnings.extend(observations(&slices, &line));
+        warnings.extend(doubts(&slices));
         let header = &slices[0].header;
         let (rows, columns) = (header.layout.rows, header.layout.columns);
         let affine = affine(&slices, &line, &grid, 0);
@@ -193,26 +195,22 @@ fn observations(slices: &[Slice], line: &Line) -> Vec<String> {
             uids.len()
         ));
     }
-    if slices.iter().any(|s| s.header.is_placed_by_location) {
+    let notes: BTreeSet<&String> = slices.iter().filter_map(|s| s.header.note.as_ref()).collect();
+    found.extend(notes.into_iter().cloned());
+    let any = |placing: Placing| slices.iter().any(|s| s.header.placing == placing);
+    if any(Placing::Location) {
+        found.push(
+            "no Image Position Patient and no Image Orientation Patient: slices are placed by Slice Location and taken as axial, head first and supine; left and right may be swapped, check them against the images"
+                .to_owned(),
+        );
+    }
+    if any(Placing::OrientationAndLocation) {
         found.push(
             "no Image Position Patient: slices are placed by Slice Location, sideways place unknown"
                 .to_owned(),
         );
     }
-    if slices[0].header.modality.is_empty() {
-        found.push("the files do not say that they are CT; values may not be HU".to_owned());
-    }
-    let foreign = |kind: &&String| kind.as_str() != "HU";
-    if let Some(kind) = slices[0].header.rescale_type.as_ref().filter(foreign) {
-        found.push(format!(
-            "the files give their values as `{kind}`, not as HU; choose the threshold by hand"
-        ));
-    }
-    if let Some(crooked_mm) = line.crooked_mm(slices) {
-        found.push(format!(
-            "slices are shifted sideways by up to {crooked_mm:.2} mm against a straight stack; moved to their places by linear interpolation"
-        ));
-    }
+    found.extend(line.note(slices));
     let unreadable: BTreeSet<(&str, &str)> = slices
         .iter()
         .map(|s| (s.header.storage.syntax_name, s.header.storage.syntax_uid))
@@ -220,6 +218,55 @@ fn observations(slices: &[Slice], line: &Line) -> Vec<String> {
         .collect();
     for (name, uid) in unreadable {
         found.push(format!("pixels stored as {name} ({uid}) cannot be read"));
+    }
+    found
+}
+
+/// What makes it doubtful that the values are Hounsfield units.
+fn doubts(slices: &[Slice]) -> Vec<String> {
+    let some = |is_doubtful: &dyn Fn(&Header) -> bool| {
+        let count = slices.iter().filter(|s| is_doubtful(&s.header)).count();
+        match count {
+            0 => None,
+            _ if count == slices.len() => Some("the files".to_owned()),
+            _ => Some(format!("the files of {count} of {} slices", slices.len())),
+        }
+    };
+    let mut found = Vec::new();
+    if let Some(files) = some(&|h| h.modality.is_empty()) {
+        found.push(format!(
+            "{files} do not say that they are CT; values may not be HU"
+        ));
+    }
+    let kinds: BTreeSet<&String> = slices
+        .iter()
+        .filter_map(|s| s.header.foreign_type.as_ref())
+        .collect();
+    for kind in kinds {
+        if let Some(files) = some(&|h| h.foreign_type.as_ref() == Some(kind)) {
+            found.push(format!(
+                "{files} give their values as `{kind}`, not as HU; choose the threshold by hand"
+            ));
+        }
+    }
+    let missing = match slices.iter().map(|s| s.place().rescale.known).min() {
+        Some(Known::Nothing) => Some("no rescale (Rescale Slope, Rescale Intercept)"),
+        Some(Known::Slope) => Some("no Rescale Intercept"),
+        Some(Known::Intercept) => Some("no Rescale Slope"),
+        Some(Known::Both) | None => None,
+    };
+    found.extend(missing.map(|what| {
+        format!("{what} in the files: values are taken as they are and may not be HU")
+    }));
+    if let Some(files) = some(&|h| !h.is_sign_known) {
+        found.push(format!(
+            "{files} do not say whether pixels are signed (Pixel Representation); taken as unsigned"
+        ));
+    }
+    if let Some(files) = some(&|h| h.is_padding_limit_wrong) {
+        found.push(format!(
+            "{files} would count 0 HU as padding; Pixel Padding Range Limit is not used"
+        ));
     }
     found
 }

@@ -190,6 +190,51 @@ fn slices_beside_the_line_are_moved_to_it() {
 }
 
 #[test]
+fn a_stack_centred_anew_halfway_is_not_tilted() {
+    for from in 1..12 {
+        // Two columns to the left: 0.5 mm each.
+        let left = |k| if k < from { -10.0 } else { -11.0 };
+        let folder = folder(12, |k, image| {
+            image.position([left(k), 20.0, 2.0 * k as f64])
+        });
+        let series = &scan(folder.path()).series[0];
+        assert!(series.tilt_degrees < 1e-9, "{from}: {series:?}");
+        let note = &series.warnings[0];
+        assert!(note.contains("shifted sideways by up to 1.00 mm"), "{note}");
+        assert!(note.contains("up to 1.00 mm of their edge"), "{note}");
+        let (volume, _) = read(folder.path());
+        let origin = volume.geometry().patient_from_voxel().origin();
+        for k in 0..12 {
+            let columns = ((left(k) - origin[0]) / 0.5).round() as i64;
+            for i in 0..4 {
+                let expected = usize::try_from(i - columns)
+                    .ok()
+                    .filter(|own| *own < 4)
+                    .map_or(-1000.0, |own| f64::from(stored(k, 1, own)) - 1024.0);
+                assert_eq!(
+                    hu(&volume, [k, 1, i as usize]),
+                    expected,
+                    "{from}, {k}, {i}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_tilted_stack_keeps_its_tilt_where_it_is_centred_anew() {
+    let (s, c) = 20.0_f64.to_radians().sin_cos();
+    let hundredths = |v: f64| (v * 100.0).round() / 100.0;
+    let folder = folder(40, |k, image| {
+        let image = image.orientation([1.0, 0.0, 0.0, 0.0, c, s]);
+        let left = if k < 20 { 0.0 } else { 12.0 };
+        image.position([left, 0.0, hundredths(0.625 * k as f64)])
+    });
+    let series = &scan(folder.path()).series[0];
+    assert!((series.tilt_degrees - 20.0).abs() < 0.2, "{series:?}");
+}
+
+#[test]
 fn without_positions_the_slice_location_serves_and_is_said() {
     let folder = folder(4, |k, image| {
         let image = image.without(tags::IMAGE_POSITION_PATIENT);
