@@ -94,8 +94,11 @@ fn a_slope_of_zero_or_no_number_scales_nothing() {
     ] {
         let mut file = Nifti::new(1);
         (file.slope, file.intercept) = (slope, intercept);
-        let (volume, _) = read("volume.nii", &file.bytes()).unwrap();
+        let (volume, warnings) = read("volume.nii", &file.bytes()).unwrap();
         assert_eq!(values(&volume), small_values(), "{slope} {intercept}");
+        // The standard's 0 says that there is no slope; no number says nothing.
+        let is_told = warnings.iter().any(|w| w.contains("make no sense"));
+        assert_eq!(is_told, slope != 0.0, "{slope} {intercept}: {warnings:?}");
     }
 }
 
@@ -262,6 +265,22 @@ fn the_sform_goes_before_the_qform_and_their_quarrel_is_told() {
     let flat = open("volume.nii", &file.bytes()).unwrap();
     assert!(flat.warnings()[0].contains("degenerate"));
     assert!(flat.geometry().spacing_mm()[2] > 1.9);
+}
+
+#[test]
+fn a_quarrel_about_the_size_of_a_voxel_is_told() {
+    for version in [1, 2] {
+        for (factor, is_told) in [(1.0, false), (0.999, false), (1.02, true), (f64::NAN, true)] {
+            let mut file = Nifti::new(version);
+            file.qform_code = 1;
+            file.pixdim[3] *= factor;
+            let file = open("volume.nii", &file.bytes()).unwrap();
+            let size = "sform and qform disagree about the size of a voxel";
+            let told = file.warnings().iter().any(|w| w.contains(size));
+            assert_eq!(told, is_told, "{factor}: {:?}", file.warnings());
+            assert!((file.geometry().spacing_mm()[2] - 2.0).abs() < 1e-9);
+        }
+    }
 }
 
 #[test]

@@ -156,7 +156,7 @@ fn element(path: &Path, code: i16) -> Result<Element, VolumeFileError> {
 /// Slope and intercept; the standard's slope of 0 means that there are none.
 fn rescale(fields: &Fields, warnings: &mut Vec<String>) -> (f64, f64) {
     let (slope, intercept) = (fields.slope, fields.intercept);
-    if slope == 0.0 || slope.is_nan() {
+    if slope == 0.0 {
         return (1.0, 0.0);
     }
     if !slope.is_finite() || !intercept.is_finite() {

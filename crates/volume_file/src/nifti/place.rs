@@ -8,6 +8,9 @@ use crate::header::{lps_from_ras, scaled};
 /// Quaternions this close to their longest have no real part left.
 const NO_REAL_PART: f64 = 1e-7;
 
+/// Share of a voxel's side by which two maps may differ: rounding and a slight shear.
+const SAME_SIZE: f64 = 0.01;
+
 /// First code of a space that is no longer this patient's (Talairach, then MNI and others).
 const TALAIRACH: i32 = 3;
 
@@ -23,7 +26,11 @@ pub(super) fn patient_from_voxel(fields: &Fields, warnings: &mut Vec<String>) ->
             (quaternion, fields.qform_code)
         }
         (Some(matrix), quaternion) => {
-            warnings.extend(quaternion.and_then(|q| disagreement(matrix, q)));
+            warnings.extend(
+                quaternion
+                    .into_iter()
+                    .flat_map(|q| disagreements(matrix, q)),
+            );
             (matrix, fields.sform_code)
         }
         (None, Some(quaternion)) => (quaternion, fields.qform_code),
@@ -93,11 +100,22 @@ fn by_quaternion(fields: &Fields, [dx, dy, dz]: [f64; 3]) -> [[f64; 4]; 3] {
     ]
 }
 
-/// A warning where matrix and quaternion count to opposite sides.
-fn disagreement(matrix: [[f64; 4]; 3], quaternion: [[f64; 4]; 3]) -> Option<String> {
-    let [sform, qform] = [matrix, quaternion].map(|rows| Affine::from_rows(rows).determinant());
-    (sform * qform < 0.0)
-        .then(|| "sform and qform disagree about left and right; the sform is taken".to_owned())
+/// Warnings where matrix and quaternion count to opposite sides, or by other steps.
+fn disagreements(matrix: [[f64; 4]; 3], quaternion: [[f64; 4]; 3]) -> Vec<String> {
+    let [sform, qform] = [matrix, quaternion].map(Affine::from_rows);
+    let mut found = Vec::new();
+    if sform.determinant() * qform.determinant() < 0.0 {
+        found.push("sform and qform disagree about left and right; the sform is taken".to_owned());
+    }
+    let ([x, y, z], [u, v, w]) = (sform.spacing(), qform.spacing());
+    // What is no number agrees with nothing.
+    let agrees = |s: f64, q: f64| (s - q).abs() <= SAME_SIZE * s;
+    if !(agrees(x, u) && agrees(y, v) && agrees(z, w)) {
+        found.push(format!(
+            "sform and qform disagree about the size of a voxel ({x:.4} x {y:.4} x {z:.4} against {u:.4} x {v:.4} x {w:.4}); the sform is taken, check a known length"
+        ));
+    }
+    found
 }
 
 /// Millimetres of the header's unit of length.
