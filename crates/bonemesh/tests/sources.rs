@@ -244,3 +244,19 @@ fn broken_uids_are_healed_on_request() {
     ];
     json(&bonemesh(&options));
 }
+
+#[cfg(unix)]
+#[test]
+fn names_of_files_cannot_drive_the_terminal() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("two\nlines \u{1b}[31m"), "no scan").unwrap();
+    let refused = bonemesh(&["info", folder.path().join("not\nthere").to_str().unwrap()]);
+    assert_eq!(message(&refused).trim_end().lines().count(), 1);
+    copy(folder.path());
+    let said = bonemesh(&["info", folder.path().to_str().unwrap()]).stdout;
+    let said = String::from_utf8(said).unwrap();
+    assert!(
+        !said.contains('\u{1b}') && said.contains("two\u{fffd}lines"),
+        "{said}"
+    );
+}

@@ -11,6 +11,9 @@ const MAX_LOCALIZER: usize = 3;
 /// How many times longer a series must be for a short one not to be its rival.
 const FAR_LONGER: usize = 20;
 
+/// Series that an error message lists.
+const MAX_LISTED: usize = 8;
+
 /// Longest UID that the standard allows.
 const MAX_UID: usize = 64;
 
@@ -100,7 +103,14 @@ fn listed(series: &[&Series]) -> String {
     if series.is_empty() {
         return "none".to_owned();
     }
-    let lines: Vec<String> = series.iter().map(|s| s.in_words()).collect();
+    let mut lines: Vec<String> = series
+        .iter()
+        .take(MAX_LISTED)
+        .map(|s| s.in_words())
+        .collect();
+    if series.len() > MAX_LISTED {
+        lines.push(format!("and {} more", series.len() - MAX_LISTED));
+    }
     lines.join("; ")
 }
 

@@ -51,7 +51,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     match result.and_then(|answer| output::print(&answer, arguments.json)) {
         Ok(()) => 0,
         Err(message) => {
-            eprintln!("bonemesh: {message}");
+            eprintln!("bonemesh: {}", text::printable(&message));
             FAILED
         }
     }

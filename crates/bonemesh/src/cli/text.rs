@@ -6,6 +6,9 @@ use std::path::Path;
 use crate::report::{CheckReport, RegionReport, RenderReport};
 use crate::source::Contents;
 
+/// Files that `info` names one by one.
+const MAX_LEFT_OUT: usize = 50;
+
 /// Cubic millimetres in a cubic centimetre.
 const MM3_PER_CM3: f64 = 1000.0;
 
@@ -30,15 +33,21 @@ pub(super) fn contents(contents: &Contents) -> String {
     }
     if !contents.left_out.is_empty() {
         line(format!("left out: {}", contents.left_out.len()));
-        for left_out in &contents.left_out {
-            line(format!(
-                "   {}: {}",
-                left_out.path.display(),
-                left_out.reason
-            ));
+        for left_out in contents.left_out.iter().take(MAX_LEFT_OUT) {
+            let path = left_out.path.to_string_lossy();
+            line(format!("   {}: {}", printable(&path), left_out.reason));
+        }
+        if let more @ 1.. = contents.left_out.len().saturating_sub(MAX_LEFT_OUT) {
+            line(format!("   and {more} more, which --json lists"));
         }
     }
     text
+}
+
+/// Text without line breaks and whatever else drives a terminal, which names of files may hold.
+pub(super) fn printable(text: &str) -> String {
+    let shown = |c: char| if c.is_control() { '\u{fffd}' } else { c };
+    text.chars().map(shown).collect()
 }
 
 /// `render` and `mesh`.
