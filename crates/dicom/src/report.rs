@@ -1,5 +1,6 @@
 //! What is said of a series before any pixel is decoded.
 
+use std::cmp::Ordering;
 use std::path::PathBuf;
 
 use serde::Serialize;
@@ -15,7 +16,7 @@ pub struct SeriesReport {
     pub description: String,
     /// `CT`, or empty where the files do not say.
     pub modality: String,
-    /// Slices of the volume, missing ones included.
+    /// Slices of the volume, those that reading interpolates included.
     pub slices: usize,
     /// Slices that the files hold.
     pub slices_found: usize,
@@ -33,7 +34,8 @@ pub struct SeriesReport {
     pub tilt_degrees: f64,
     /// Where each slice found lies along the slices' normal (mm), ascending.
     pub slice_positions_mm: Vec<f64>,
-    /// Where slices are missing; reading fills the places.
+    /// Where slices are missing or lie more than 1.5 of the volume's steps apart; reading fills the
+    /// places.
     pub gaps: Vec<Gap>,
     /// Whether the distances differ so that reading resamples the slices evenly.
     pub is_resampled: bool,
@@ -73,21 +75,16 @@ impl SeriesReport {
 
     /// One line that tells this series from the others.
     pub fn in_words(&self) -> String {
-        let interpolated = if self.slices == self.slices_found {
-            String::new()
-        } else {
-            format!(" ({} with interpolated ones)", self.slices)
-        };
         let uid = if self.uid.is_empty() {
             "no UID"
         } else {
             &self.uid
         };
         format!(
-            "{} = {}, {} slices{interpolated} of {} x {}, {:.2} mm apart ({uid})",
+            "{} = {}, {} of {} x {}, {:.2} mm apart ({uid})",
             self.number,
             self.title(),
-            self.slices_found,
+            self.counted(),
             self.columns,
             self.rows,
             self.spacing_mm[2],
@@ -104,8 +101,8 @@ impl SeriesReport {
         };
         let mut lines = vec![
             format!(
-                "{modality}, {} slices of {} x {} pixels ({:.1} x {:.1} x {:.1} mm)",
-                self.slices,
+                "{modality}, {} of {} x {} pixels ({:.1} x {:.1} x {:.1} mm)",
+                self.counted(),
                 self.columns,
                 self.rows,
                 dx * self.columns as f64,
@@ -139,6 +136,18 @@ impl SeriesReport {
         });
         lines.extend(self.warnings.iter().map(|w| format!("note: {w}")));
         lines
+    }
+
+    /// How many slices there are, and how many of them the files hold.
+    fn counted(&self) -> String {
+        let (slices, found) = (self.slices, self.slices_found);
+        match slices.cmp(&found) {
+            Ordering::Equal => format!("{slices} slices"),
+            Ordering::Greater => {
+                format!("{found} slices found, {slices} with those between interpolated,")
+            }
+            Ordering::Less => format!("{found} slices found, {slices} after resampling,"),
+        }
     }
 
     fn evenness(&self) -> String {

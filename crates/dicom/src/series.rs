@@ -57,6 +57,7 @@ impl Series {
         if evenness != Evenness::Even {
             warnings.push(evenness.to_string());
         }
+        warnings.extend(grid.note(slices.len()));
         let line = Line::of(&slices);
         warnings.extend(observations(&slices, &line));
         warnings.extend(doubts(&slices));
@@ -79,10 +80,7 @@ impl Series {
             tilt_degrees: geometry.tilt_degrees(),
             slice_positions_mm: along,
             is_resampled: matches!(evenness, Evenness::Uneven { .. }),
-            gaps: match evenness {
-                Evenness::Missing { gaps } => gaps,
-                _ => Vec::new(),
-            },
+            gaps: evenness.into_gaps(),
             duplicates: copies.iter().map(Slice::name).collect(),
             transfer_syntax: syntaxes(&slices),
             estimated_memory_bytes: memory_bytes(&slices, &grid),

@@ -21,6 +21,9 @@ const MIN_SHARE: usize = 10;
 /// Most grid places for one slice; finer grids would invent more than they keep.
 const MAX_FILL: usize = 8;
 
+/// Distance, in steps, from which slices are said to lie apart.
+const WIDE: f64 = 1.5;
+
 /// Places of the volume's slices along the normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Grid {
@@ -45,7 +48,19 @@ pub(crate) enum Evenness {
         low_mm: f64,
         high_mm: f64,
         step_mm: f64,
+        /// Where a step or more of the grid has no slice.
+        gaps: Vec<Gap>,
     },
+}
+
+impl Evenness {
+    /// Where slices are missing.
+    pub(crate) fn into_gaps(self) -> Vec<Gap> {
+        match self {
+            Self::Missing { gaps } | Self::Uneven { gaps, .. } => gaps,
+            Self::Even | Self::Nearly { .. } => Vec::new(),
+        }
+    }
 }
 
 impl fmt::Display for Evenness {
@@ -71,6 +86,7 @@ impl fmt::Display for Evenness {
                 low_mm,
                 high_mm,
                 step_mm,
+                ..
             } => write!(
                 f,
                 "slice distances vary from {low_mm:.3} to {high_mm:.3} mm; resampled to {step_mm:.3} mm by linear interpolation"
@@ -116,6 +132,7 @@ impl Grid {
             low_mm,
             high_mm,
             step_mm,
+            gaps: gaps(along, step_mm),
         };
         if off > ON_GRID {
             let count = (total / base - 1e-6).ceil().max(1.0) as usize;
@@ -127,20 +144,12 @@ impl Grid {
             };
             (grid, uneven(step_mm))
         } else if missing > 0 {
-            let wide = |s: &&f64| **s > 1.5 * even.step_mm;
-            let gaps = steps.iter().filter(wide).count();
+            let gaps = gaps(along, even.step_mm);
             // Gaps here and there are missing slices; as a rule they are another spacing.
-            let evenness = if 4 * gaps > steps.len() && steps.len() > 4 {
+            let evenness = if 4 * gaps.len() > steps.len() && steps.len() > 4 {
                 uneven(even.step_mm)
             } else {
-                let gap = |(step, at): (&f64, &f64)| Gap {
-                    after_mm: *at,
-                    missing: (step / even.step_mm).round() as usize - 1,
-                };
-                let gaps = steps.iter().zip(along).filter(|(s, _)| wide(s));
-                Evenness::Missing {
-                    gaps: gaps.map(gap).collect(),
-                }
+                Evenness::Missing { gaps }
             };
             (even, evenness)
         } else if off > EVEN {
@@ -148,6 +157,16 @@ impl Grid {
         } else {
             (even, Evenness::Even)
         }
+    }
+
+    /// What a user should know where most slices of the volume are none of the scanner's.
+    pub(crate) fn note(&self, found: usize) -> Option<String> {
+        let between = self.count.saturating_sub(found);
+        (between > found).then(|| {
+            format!(
+                "more slices are interpolated than found: {found} were found, {between} are filled in between; check that the series is complete"
+            )
+        })
     }
 
     /// Place `index` (mm along the normal).
@@ -188,6 +207,16 @@ impl Grid {
             .collect();
         (begin, sources)
     }
+}
+
+/// Where slices lie so far apart that at least one of the grid's fits between.
+fn gaps(along: &[f64], step_mm: f64) -> Vec<Gap> {
+    let wide = along.windows(2).filter(|w| w[1] - w[0] > WIDE * step_mm);
+    let gap = |w: &[f64]| Gap {
+        after_mm: w[0],
+        missing: ((w[1] - w[0]) / step_mm).round() as usize - 1,
+    };
+    wide.map(gap).collect()
 }
 
 /// Whole grid places of the second and later slices.
@@ -253,6 +282,13 @@ mod tests {
         assert!((grid.step_mm - 1.5).abs() < 1e-12);
         assert_eq!(grid.count, 12);
         assert!(matches!(evenness, Evenness::Uneven { .. }));
+        let expected = [4.5, 7.5, 10.5, 13.5].map(|after_mm| Gap {
+            after_mm,
+            missing: 1,
+        });
+        assert_eq!(evenness.into_gaps(), expected);
+        assert_eq!(grid.note(8), None);
+        assert!(grid.note(5).is_some());
     }
 
     #[test]

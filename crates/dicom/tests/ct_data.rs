@@ -202,6 +202,26 @@ fn uneven_slices_are_resampled_to_the_finer_step() {
 }
 
 #[test]
+fn a_coarser_second_half_is_told_step_by_step() {
+    let Some(scan) = scan("hard/29_variable_spacing_1.5_then_3") else {
+        return;
+    };
+    let series = &scan.series[0];
+    assert!(series.is_resampled);
+    assert_eq!((series.slices_found, series.slices), (24, 36));
+    let after: Vec<f64> = series.gaps.iter().map(|g| g.after_mm).collect();
+    assert_eq!(after, &series.slice_positions_mm[11..23]);
+    assert!(series.gaps.iter().all(|g| g.missing == 1));
+    let lines = series.lines().join("\n");
+    assert!(
+        lines.contains("24 slices found, 36 with those between interpolated"),
+        "{lines}"
+    );
+    assert!(lines.contains("unevenly spaced"), "{lines}");
+    assert!(!lines.contains("more slices are interpolated"), "{lines}");
+}
+
+#[test]
 fn a_tilted_gantry_keeps_its_shear() {
     let Some(scan) = scan("hard/30_gantry_tilt_header_15deg") else {
         return;
@@ -239,6 +259,20 @@ fn a_mixed_folder_gives_its_series_and_names_the_rest() {
             .reason
             .clone()
     };
+    let slices = |n: usize| (scan.series[n].slices_found, scan.series[n].slices);
+    assert_eq!(scan.series.len(), 2);
+    assert_eq!((slices(0), slices(1)), ((24, 24), (8, 31)));
+    let sparse = scan.series[1].lines().join("\n");
+    for said in [
+        "8 slices found, 31 with those between interpolated",
+        "unevenly spaced",
+        "more slices are interpolated than found: 8 were found, 23 are",
+    ] {
+        assert!(sparse.contains(said), "{sparse}");
+    }
+    let missing: usize = scan.series[1].gaps.iter().map(|g| g.missing).sum();
+    assert_eq!(missing, 23);
+    assert_eq!(scan.left_out.len(), 6);
     assert!(reason("DICOMDIR").contains("directory"));
     assert_eq!(reason("Thumbs.db"), "not a DICOM file");
     assert_eq!(reason("readme.txt"), "not a DICOM file");
