@@ -3,7 +3,8 @@
 //! dicom-rs decodes the element headers; walking over them is done here, because every length
 //! has to be held against the size of the file *before* memory is asked for, because values
 //! that are not needed are skipped instead of read, and because the place of the pixels in the
-//! file is wanted rather than the pixels. Names, dates and numbers of the patient are never read.
+//! file is wanted rather than the pixels. Names, dates and numbers of the patient are never read;
+//! times of the scan are, to tell phases apart.
 
 use std::collections::BTreeMap;
 use std::io::{Read, Seek};
@@ -40,7 +41,7 @@ const ITEM_END: Tag = Tag(0xfffe, 0xe00d);
 const SEQUENCE_END: Tag = Tag(0xfffe, 0xe0dd);
 
 /// Elements of the data set itself that are kept.
-const WANTED: [Tag; 28] = [
+const WANTED: [Tag; 36] = [
     tags::MEDIA_STORAGE_SOP_CLASS_UID,
     tags::TRANSFER_SYNTAX_UID,
     tags::SPECIFIC_CHARACTER_SET,
@@ -69,16 +70,28 @@ const WANTED: [Tag; 28] = [
     tags::RESCALE_INTERCEPT,
     tags::RESCALE_SLOPE,
     tags::RESCALE_TYPE,
+    tags::STUDY_INSTANCE_UID,
+    tags::FRAME_OF_REFERENCE_UID,
+    tags::TEMPORAL_POSITION_IDENTIFIER,
+    tags::TRIGGER_TIME,
+    tags::ACQUISITION_DATE_TIME,
+    tags::ACQUISITION_TIME,
+    tags::CONTENT_TIME,
+    tags::TEMPORAL_POSITION_INDEX,
 ];
 
 /// Elements inside functional groups that are kept; each occurs in one macro only.
-const WANTED_IN_GROUPS: [Tag; 6] = [
+const WANTED_IN_GROUPS: [Tag; 10] = [
     tags::IMAGE_POSITION_PATIENT,
     tags::IMAGE_ORIENTATION_PATIENT,
     tags::PIXEL_SPACING,
     tags::RESCALE_INTERCEPT,
     tags::RESCALE_SLOPE,
     tags::RESCALE_TYPE,
+    tags::TEMPORAL_POSITION_INDEX,
+    tags::DIMENSION_INDEX_VALUES,
+    tags::FRAME_ACQUISITION_DATE_TIME,
+    tags::FRAME_REFERENCE_DATE_TIME,
 ];
 
 /// Where the pixels lie in the data set.
@@ -145,6 +158,16 @@ impl Elements {
             Endianness::Little => u16::from_le_bytes(bytes),
             Endianness::Big => u16::from_be_bytes(bytes),
         })
+    }
+
+    /// All unsigned 32-bit numbers of an element among `values` of this data set.
+    pub(crate) fn u32s(&self, values: &Values, tag: Tag) -> Vec<u32> {
+        let bytes = values.get(&tag).map_or(&[][..], Vec::as_slice);
+        let number = |b: &[u8; 4]| match self.endianness {
+            Endianness::Little => u32::from_le_bytes(*b),
+            Endianness::Big => u32::from_be_bytes(*b),
+        };
+        bytes.as_chunks().0.iter().map(number).collect()
     }
 
     /// Text of an element without padding.

@@ -1,10 +1,11 @@
 //! Headers to stacks: groups of slices that make one volume.
 //!
-//! 1. [`alike`]: same series, image type and size; orientation and pixel spacing within rounding.
-//! 2. [`by_acquisition`]: acquisitions stay together where they make one stack (scanners that
-//!    step through the body count every rotation as an acquisition), and apart where they overlap.
-//! 3. [`apart`](crate::same_place::apart): slices at the same place are dropped if their pixels are the same, else each
-//!    copy goes to a stack of its own.
+//! 1. [`alike`]: same study, series, frame of reference, image type and size; orientation and
+//!    pixel spacing within rounding.
+//! 2. [`by_acquisition`]: acquisitions stay together where they follow one another, and apart
+//!    where they overlap.
+//! 3. [`apart`](crate::same_place::apart): slices at the same place are dropped if their pixels
+//!    are the same, else sorted by time into stacks of their own.
 //! 4. [`without_gaps`]: a stack ends where the next slice is too far away to be a neighbour.
 
 use std::collections::BTreeMap;
@@ -12,8 +13,9 @@ use std::sync::Arc;
 
 use bonemesh_task::{Cancelled, Task};
 
+use crate::acquisitions::by_acquisition;
 use crate::header::{Frame, Header};
-use crate::same_place::{SAME_PLACE_MM, apart};
+use crate::same_place::apart;
 use crate::slice::Slice;
 use crate::vector::{cross, dot};
 
@@ -22,9 +24,6 @@ const SAME_ORIENTATION: f64 = 1e-3;
 
 /// Largest relative difference of two spacings that is rounding.
 const SAME_SPACING: f64 = 1e-3;
-
-/// Gap, in typical steps, up to which two acquisitions are one stack.
-const MAX_ACQUISITION_GAP: f64 = 3.0;
 
 /// Gap, in typical steps, from which a stack is two: filling it would invent anatomy.
 const MAX_GAP: f64 = 10.0;
@@ -67,26 +66,27 @@ pub(crate) fn stacks(
 }
 
 fn alike(headers: Vec<Arc<Header>>, grouping: Grouping) -> Vec<Vec<Slice>> {
-    let mut by_name: BTreeMap<_, Vec<(Frame, Vec<Slice>)>> = BTreeMap::new();
+    let mut by_name: BTreeMap<_, Alike> = BTreeMap::new();
     for header in headers {
-        let (uid, image_type) = match grouping {
-            Grouping::ByUid => (header.series_uid.clone(), header.image_type.clone()),
+        let names = match grouping {
+            Grouping::ByUid => [
+                &header.study_uid,
+                &header.series_uid,
+                &header.reference_uid,
+                &header.image_type,
+            ]
+            .map(String::clone),
             Grouping::WholeFolder => Default::default(),
         };
-        let key = (uid, image_type, header.layout.rows, header.layout.columns);
+        let key = (names, header.layout.rows, header.layout.columns);
         let groups = by_name.entry(key).or_default();
         for (index, frame) in header.frames.iter().enumerate() {
-            let at = groups
-                .iter()
-                .position(|(first, _)| is_alike(first, frame))
-                .unwrap_or_else(|| {
-                    groups.push((frame.clone(), Vec::new()));
-                    groups.len() - 1
-                });
-            let [x, y] = groups[at].0.orientation;
+            let at = groups.find_or_add(frame);
+            let (first, slices) = &mut groups.groups[at];
+            let [x, y] = first.orientation;
             // One normal for all, or rounding would disorder the slices.
             let along_mm = dot(frame.position, cross(x, y));
-            groups[at].1.push(Slice {
+            slices.push(Slice {
                 header: Arc::clone(&header),
                 frame: index,
                 along_mm,
@@ -95,9 +95,51 @@ fn alike(headers: Vec<Arc<Header>>, grouping: Grouping) -> Vec<Vec<Slice>> {
     }
     by_name
         .into_values()
-        .flatten()
+        .flat_map(|g| g.groups)
         .map(|(_, slices)| ordered(slices))
         .collect()
+}
+
+/// Groups of slices like their first, found without looking at every group.
+#[derive(Default)]
+struct Alike {
+    groups: Vec<(Frame, Vec<Slice>)>,
+    /// Numbers of the groups by the hashes of their first frames.
+    by_hash: BTreeMap<i64, Vec<usize>>,
+}
+
+impl Alike {
+    /// The first group that the frame is like.
+    fn find_or_add(&mut self, frame: &Frame) -> usize {
+        let hash = near_hash(frame);
+        let near = self.by_hash.range(hash - HASH_WIDTH..=hash + HASH_WIDTH);
+        let alike = near
+            .flat_map(|(_, numbers)| numbers)
+            .filter(|n| is_alike(&self.groups[**n].0, frame));
+        if let Some(first) = alike.min() {
+            return *first;
+        }
+        let number = self.groups.len();
+        self.groups.push((frame.clone(), Vec::new()));
+        self.by_hash.entry(hash).or_default().push(number);
+        number
+    }
+}
+
+/// Weights of orientation and spacing in [`near_hash`], without common measure so that frames
+/// that differ seldom agree in their sum.
+const HASH_WEIGHTS: [f64; 8] = [1.0, 0.618, 0.877, 0.472, 0.755, 0.549, 0.926, 0.671];
+
+/// Most that the hashes of frames that are alike differ: each weight, below 6 in all, times what
+/// is rounding, in millionths; and as much again for relative differences and rounding.
+const HASH_WIDTH: i64 = 12_000;
+
+/// A number that is near for frames that are alike.
+fn near_hash(frame: &Frame) -> i64 {
+    let spacing = frame.spacing.map(f64::ln);
+    let values = frame.orientation.as_flattened().iter().chain(&spacing);
+    let sum: f64 = values.zip(HASH_WEIGHTS).map(|(v, w)| v * w).sum();
+    (sum * 1e6).round() as i64
 }
 
 fn is_alike(a: &Frame, b: &Frame) -> bool {
@@ -121,38 +163,20 @@ fn ordered(mut slices: Vec<Slice>) -> Vec<Slice> {
     slices
 }
 
-fn by_acquisition(slices: Vec<Slice>) -> Vec<Vec<Slice>> {
-    let mut parts: BTreeMap<Option<i64>, Vec<Slice>> = BTreeMap::new();
-    for slice in &slices {
-        let part = parts.entry(slice.header.acquisition).or_default();
-        part.push(slice.clone());
-    }
-    let steps = steps(&slices);
-    let largest = steps.iter().copied().fold(0.0, f64::max);
-    let is_one_stack = steps.iter().all(|s| *s > SAME_PLACE_MM)
-        && largest <= MAX_ACQUISITION_GAP * median(&steps).unwrap_or(0.0);
-    let are_single = parts.values().all(|p| p.len() == 1);
-    if parts.len() == 1 || is_one_stack || are_single {
-        vec![slices]
-    } else {
-        parts.into_values().collect()
-    }
+/// Distances between neighbours.
+pub(crate) fn steps(along_mm: &[f64]) -> Vec<f64> {
+    along_mm.windows(2).map(|w| w[1] - w[0]).collect()
 }
 
-fn steps(slices: &[Slice]) -> Vec<f64> {
-    let pairs = slices.windows(2);
-    pairs.map(|w| w[1].along_mm - w[0].along_mm).collect()
-}
-
-fn median(values: &[f64]) -> Option<f64> {
+pub(crate) fn median(values: &[f64]) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
     sorted.get(sorted.len() / 2).copied()
 }
 
 fn without_gaps(stack: Stack) -> Vec<Stack> {
-    let steps = steps(&stack.slices);
-    let largest = median(&steps).map_or(f64::INFINITY, |m| m * MAX_GAP);
+    let along: Vec<f64> = stack.slices.iter().map(|s| s.along_mm).collect();
+    let largest = median(&steps(&along)).map_or(f64::INFINITY, |m| m * MAX_GAP);
     let mut gaps = stack
         .slices
         .windows(2)

@@ -10,6 +10,7 @@ use crate::elements::{Elements, PixelPlace, Values, numbers, text};
 use crate::error::FileError;
 use crate::file::{self, Parsed};
 use crate::fragments::Index;
+use crate::moment::{Moment, moments};
 use crate::plausible;
 use crate::vector::{cross, dot, length, scaled};
 
@@ -79,7 +80,10 @@ pub(crate) struct Frame {
 #[derive(Clone, Debug)]
 pub(crate) struct Header {
     pub(crate) path: PathBuf,
+    pub(crate) study_uid: String,
     pub(crate) series_uid: String,
+    /// Names the coordinate system of the positions.
+    pub(crate) reference_uid: String,
     pub(crate) description: String,
     pub(crate) modality: String,
     pub(crate) image_type: String,
@@ -95,6 +99,8 @@ pub(crate) struct Header {
     pub(crate) is_placed_by_location: bool,
     pub(crate) is_cut_off: bool,
     pub(crate) frames: Vec<Frame>,
+    /// When each frame was taken.
+    pub(crate) moments: Vec<Moment>,
 }
 
 impl Header {
@@ -129,6 +135,8 @@ impl Header {
         plausible::check(&layout, &storage, parsed.stored)?;
         Ok(Self {
             path: path.to_owned(),
+            study_uid: e.text(tags::STUDY_INSTANCE_UID).unwrap_or_default(),
+            reference_uid: e.text(tags::FRAME_OF_REFERENCE_UID).unwrap_or_default(),
             series_uid: e.text(tags::SERIES_INSTANCE_UID).unwrap_or_default(),
             description: e.described(tags::SERIES_DESCRIPTION),
             modality,
@@ -142,6 +150,7 @@ impl Header {
             is_placed_by_location,
             is_cut_off: native.is_some() && available < needed,
             frames,
+            moments: moments(e),
         })
     }
 }

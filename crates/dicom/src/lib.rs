@@ -34,6 +34,7 @@
 //! LUT, C.7.6.16 multi-frame functional groups) and PS3.5 (encodings). Element headers and codecs
 //! are those of dicom-rs; JPEG-LS is `CharLS`, JPEG of 12 bits libjpeg-turbo.
 
+mod acquisitions;
 mod choice;
 mod codec;
 mod codestream;
@@ -49,6 +50,8 @@ mod inflated;
 mod jpeg_12;
 mod jpeg_2000;
 mod line;
+mod moment;
+mod phases;
 mod plausible;
 mod read;
 mod report;

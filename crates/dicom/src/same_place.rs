@@ -6,6 +6,7 @@ use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;
 
 use crate::group::Stack;
+use crate::phases::{Sorted, sorted};
 use crate::slice::Slice;
 
 /// Slices closer than this (mm) are at the same place.
@@ -16,11 +17,13 @@ pub(crate) const SAME_PLACE_MM: f64 = 1e-3;
 const MAX_AT_ONE_PLACE: usize = 256;
 
 /// The slices of one place.
-struct Place {
-    /// Those that differ.
-    kept: Vec<Slice>,
-    /// Those that are copies or cannot be read.
-    copies: Vec<Slice>,
+pub(crate) struct Place {
+    /// Those that can be read, each with a number that only slices with the same pixels share.
+    pub(crate) images: Vec<(Slice, usize)>,
+    /// How many different images there are.
+    pub(crate) kinds: usize,
+    /// Those that cannot be read.
+    pub(crate) unreadable: Vec<Slice>,
     /// Those that nobody looked at.
     surplus: Vec<Slice>,
 }
@@ -34,29 +37,36 @@ pub(crate) fn apart(slices: &[Slice], task: &Task) -> Result<Vec<Stack>, Cancell
         .into_par_iter()
         .map(|place| different(place, task))
         .collect::<Result<Vec<_>, Cancelled>>()?;
-    let copies: Vec<Slice> = places.iter().flat_map(|p| p.copies.clone()).collect();
-    let surplus: Vec<Slice> = places.iter().flat_map(|p| p.surplus.clone()).collect();
+    let Sorted {
+        volumes,
+        copies,
+        is_guessed,
+    } = sorted(&places);
+    let surplus: Vec<Slice> = places.into_iter().flat_map(|p| p.surplus).collect();
     let notes = notes(&copies, &surplus);
-    let layers = places.iter().map(|p| p.kept.len()).max().unwrap_or(0);
-    let mut stacks: Vec<Stack> = (0..layers)
-        .map(|layer| Stack {
-            slices: places
-                .iter()
-                .filter_map(|p| p.kept.get(layer).cloned())
-                .collect(),
-            notes: notes.clone(),
-            copies: Vec::new(),
-            surplus: Vec::new(),
-        })
-        .collect();
-    if layers > 1 {
-        for (layer, stack) in stacks.iter_mut().enumerate() {
-            stack.notes.push(format!(
-                "the series has different slices at the same places; this is image {} of {layers} there",
-                layer + 1
+    let count = volumes.len();
+    let with_notes = |(index, slices): (usize, Vec<Slice>)| {
+        let mut notes = notes.clone();
+        if count > 1 {
+            notes.push(format!(
+                "the series has different slices at the same places; this is image {} of {count} there",
+                index + 1
             ));
         }
-    }
+        if is_guessed {
+            notes.push(
+                "nothing in the files tells the times apart, so images of different times may be mixed; look at the result"
+                    .to_owned(),
+            );
+        }
+        Stack {
+            slices,
+            notes,
+            copies: Vec::new(),
+            surplus: Vec::new(),
+        }
+    };
+    let mut stacks: Vec<Stack> = volumes.into_iter().enumerate().map(with_notes).collect();
     if let Some(first) = stacks.first_mut() {
         first.copies = copies;
         first.surplus = surplus;
@@ -91,36 +101,39 @@ fn notes(copies: &[Slice], surplus: &[Slice]) -> Vec<String> {
 
 fn different(place: &[Slice], task: &Task) -> Result<Place, Cancelled> {
     let (seen, surplus) = place.split_at(place.len().min(MAX_AT_ONE_PLACE));
-    let mut kept: Vec<(Slice, u64)> = Vec::new();
-    let mut copies = Vec::new();
+    let mut found = Place {
+        images: Vec::new(),
+        kinds: 0,
+        unreadable: Vec::new(),
+        surplus: surplus.to_vec(),
+    };
+    // The first slice of each kind.
+    let mut kinds: Vec<(Slice, u64)> = Vec::new();
     for slice in seen {
         task.check()?;
-        let digest = if place.len() == 1 {
+        let kind = if place.len() == 1 {
             Some(0)
         } else {
-            digest_if_new(slice, &kept)
+            kind(slice, &mut kinds)
         };
-        match digest {
-            Some(digest) => kept.push((slice.clone(), digest)),
-            None => copies.push(slice.clone()),
+        match kind {
+            Some(kind) => found.images.push((slice.clone(), kind)),
+            None => found.unreadable.push(slice.clone()),
         }
     }
-    if kept.is_empty() {
+    if found.images.is_empty() {
         // Reading says what is wrong with it.
-        kept.push((copies.remove(0), 0));
+        found.images.push((found.unreadable.remove(0), 0));
     }
-    Ok(Place {
-        kept: kept.into_iter().map(|(slice, _)| slice).collect(),
-        copies,
-        surplus: surplus.to_vec(),
-    })
+    found.kinds = kinds.len().max(1);
+    Ok(found)
 }
 
-/// A digest of the slice's pixels, if they can be read and none of `kept` has the same.
+/// Which of `kinds` the slice's pixels are, a new one if none; nothing if they cannot be read.
 ///
 /// Digests instead of pixels are kept, so that any number of slices takes the memory of two;
 /// equal digests are confirmed by the pixels themselves.
-fn digest_if_new(slice: &Slice, kept: &[(Slice, u64)]) -> Option<u64> {
+fn kind(slice: &Slice, kinds: &mut Vec<(Slice, u64)>) -> Option<usize> {
     let hu: Vec<f32> = slice.decode_whole().ok()?;
     let mut hasher = DefaultHasher::new();
     for value in &hu {
@@ -134,5 +147,8 @@ fn digest_if_new(slice: &Slice, kept: &[(Slice, u64)]) -> Option<u64> {
                 .decode_whole()
                 .is_ok_and(|other: Vec<f32>| other == hu)
     };
-    (!kept.iter().any(is_same)).then_some(digest)
+    Some(kinds.iter().position(is_same).unwrap_or_else(|| {
+        kinds.push((slice.clone(), digest));
+        kinds.len() - 1
+    }))
 }
