@@ -6,7 +6,7 @@ mod common;
 
 use bonemesh_dicom::{DicomError, find_series, read_series};
 use bonemesh_task::Task;
-use common::{Image, file, folder, scan};
+use common::{Image, folder, scan};
 use dicom_core::VR;
 use dicom_dictionary_std::{tags, uids};
 use proptest::prelude::*;
@@ -132,14 +132,34 @@ fn frames_without_end_are_not_believed() {
 
 #[test]
 fn positions_beyond_all_reason_give_no_endless_volume() {
-    let folder = folder(4, |k, image| {
-        image.position([0.0, 0.0, [0.0, 0.001_5, 1e9, 1e12][k]])
-    });
-    try_to_read(folder.path());
-    let far = folder.path().join("far");
-    Image::new(0).position([1e300, 1e300, -1e300]).write(&far);
-    try_to_read(folder.path());
-    assert!(file(folder.path(), 4, 0).exists());
+    let placed = |z: [f64; 4]| {
+        let folder = folder(4, |k, image| image.position([0.0, 0.0, z[k]]));
+        let far = folder.path().join("far");
+        Image::new(0).position([1e300, 1e300, -1e300]).write(&far);
+        folder
+    };
+    let kilometre = "more than a kilometre";
+    // The slices that are left, how many a volume of them may have at most, and why others are not
+    // among them.
+    for (z, found, most, reasons) in [
+        ([0.0, 0.001_5, 1e9, 1e12], 2, 2, vec![kilometre; 3]),
+        ([0.0, 0.1, 0.2, 9e5], 3, 3, vec!["single slice", kilometre]),
+        // Two slices a hair apart do not set the distance of all.
+        ([0.0, 0.02, 5.0, 10.0], 4, 33, vec![kilometre]),
+    ] {
+        let folder = placed(z);
+        let scan = scan(folder.path());
+        assert_eq!(scan.series.len(), 1, "{z:?}");
+        let series = &scan.series[0];
+        assert_eq!(series.slices_found, found, "{z:?}");
+        assert!(series.slices <= most, "{z:?}: {} slices", series.slices);
+        let (volume, _) = read_series(series, &Task::default()).unwrap();
+        assert_eq!(volume.geometry().shape()[0], series.slices, "{z:?}");
+        assert_eq!(scan.left_out.len(), reasons.len(), "{z:?}");
+        for (left_out, reason) in scan.left_out.iter().zip(reasons) {
+            assert!(left_out.reason.contains(reason), "{}", left_out.reason);
+        }
+    }
 }
 
 #[test]
