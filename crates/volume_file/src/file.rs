@@ -9,7 +9,7 @@ use crate::data::Encoding;
 use crate::error::VolumeFileError;
 use crate::header::Header;
 use crate::sample::{AIR_HU, Summary};
-use crate::sniff::{Format, sniff};
+use crate::sniff::{Format, damage, sniff};
 use crate::{nifti, nrrd, read};
 
 /// A file that holds a whole volume; its header was read and checked, its voxels were not read.
@@ -38,9 +38,9 @@ impl VolumeFile {
     /// [`VolumeFileError`], all but `Data`, `Memory` and `Cancelled`: what the file is, claims or
     /// lacks is found here, and no memory is asked for on the header's word.
     pub fn open(path: &Path) -> Result<Self, VolumeFileError> {
-        let unknown = || VolumeFileError::UnknownFormat(path.to_owned());
         let Some(head) = sniff(path)? else {
-            return Self::open(&nifti::header_of_image(path).ok_or_else(unknown)?);
+            let header = nifti::header_of_image(path).ok_or_else(|| unknown(path));
+            return Self::open(&header?);
         };
         let header = match head.format {
             Format::Nifti1 { has_pair } => nifti::version_1(path, &head, has_pair)?,
@@ -126,6 +126,27 @@ impl VolumeFile {
         })?;
         Ok((volume, warnings))
     }
+}
+
+/// Why a file is of no known format: damaged where its name promises one.
+fn unknown(path: &Path) -> VolumeFileError {
+    const ENDINGS: [(&str, &str); 4] = [
+        (".nii", "NIfTI"),
+        (".nii.gz", "NIfTI"),
+        (".nrrd", "NRRD"),
+        (".nhdr", "NRRD"),
+    ];
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let name = name.to_ascii_lowercase();
+    let promised = ENDINGS.iter().find(|(ending, _)| name.ends_with(ending));
+    let Some((_, format)) = promised else {
+        return VolumeFileError::UnknownFormat(path.to_owned());
+    };
+    let reason = match damage(path) {
+        Some(reason) => reason.to_owned(),
+        None => format!("its first bytes are not those of {format}"),
+    };
+    VolumeFileError::header(path, reason)
 }
 
 /// What the values say.

@@ -57,6 +57,20 @@ pub(crate) fn sniff(path: &Path) -> Result<Option<Head>, VolumeFileError> {
     }))
 }
 
+/// What keeps a file of no known format from having a header at all.
+pub(crate) fn damage(path: &Path) -> Option<&'static str> {
+    let mut file = BufReader::new(File::open(path).ok()?.take(MAX_COMPRESSED));
+    let begin = io::BufRead::fill_buf(&mut file).ok()?;
+    if begin.is_empty() {
+        return Some("it is empty");
+    }
+    if !begin.starts_with(&MAGIC) {
+        return None;
+    }
+    let inflated = Members::new(file).take(HEAD).read_to_end(&mut Vec::new());
+    inflated.err().map(|_| "its gzip data cannot be inflated")
+}
+
 fn format(bytes: &[u8], is_gzip: bool) -> Option<Format> {
     if !is_gzip && bytes.starts_with(b"NRRD000") {
         return Some(Format::Nrrd);

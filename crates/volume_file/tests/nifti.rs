@@ -47,12 +47,17 @@ fn the_content_decides_not_the_name() {
         assert!(VolumeFile::is_one(&path), "{name}");
         assert!(VolumeFile::open(&path).is_ok(), "{name}");
     }
-    let text = folder.write("d.nii", b"not a volume at all");
+    let text = folder.write("d.dat", b"not a volume at all");
     assert!(!VolumeFile::is_one(&text));
     assert!(!VolumeFile::is_one(folder.path()));
     assert!(!VolumeFile::is_one(&folder.path().join("nothing")));
     let error = VolumeFile::open(&text).unwrap_err();
     assert!(matches!(error, VolumeFileError::UnknownFormat(_)));
+    // Of content that is none, the name says what it should have been.
+    let text = folder.write("e.nii", b"not a volume at all");
+    assert!(!VolumeFile::is_one(&text));
+    let error = VolumeFile::open(&text).unwrap_err();
+    assert!(matches!(error, VolumeFileError::Header { .. }), "{error}");
 }
 
 #[test]
