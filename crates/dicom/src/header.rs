@@ -10,6 +10,7 @@ use crate::elements::{Elements, PixelPlace, Values, numbers, text};
 use crate::error::FileError;
 use crate::file::{self, Parsed};
 use crate::fragments::Index;
+use crate::hounsfield::{self, Rescale};
 use crate::moment::{Moment, moments};
 use crate::plausible;
 use crate::vector::{cross, dot, length, scaled};
@@ -20,11 +21,11 @@ const MAX_SKEW: f64 = 1e-2;
 /// Spacings of pixels (mm) that a scan can have: from a micrometre to a metre.
 const SPACING_MM: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
 
+/// Characters of a wrong value that are quoted.
+const MAX_QUOTED: usize = 80;
+
 /// Farthest place from the scanner's origin (mm), a kilometre.
 const MAX_PLACE_MM: f64 = 1e6;
-
-/// Largest rescale slope and intercept; with 32-bit pixels the values stay within 32-bit floats.
-const MAX_RESCALE: f64 = 1e12;
 
 /// How stored values are laid out in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,9 +72,19 @@ pub(crate) struct Frame {
     pub(crate) orientation: [[f64; 3]; 2],
     /// Between columns, between rows (mm).
     pub(crate) spacing: [f64; 2],
-    pub(crate) slope: f64,
-    pub(crate) intercept: f64,
+    pub(crate) rescale: Rescale,
     pub(crate) slice_location: Option<f64>,
+}
+
+/// What a frame's place was taken from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Placing {
+    /// Slice location, with an assumed orientation.
+    Location,
+    /// Orientation and slice location.
+    OrientationAndLocation,
+    /// Orientation and position.
+    Position,
 }
 
 /// The header of one image file.
@@ -93,10 +104,15 @@ pub(crate) struct Header {
     pub(crate) storage: Storage,
     /// Bytes that the data set takes in the file.
     pub(crate) stored: u64,
-    /// What the rescaled values are, where the file says: `HU`, `US` (unspecified) or others.
-    pub(crate) rescale_type: Option<String>,
-    /// Positions had to be taken from the slice location.
-    pub(crate) is_placed_by_location: bool,
+    /// What the rescaled values are if not HU: `US` (unspecified) or others.
+    pub(crate) foreign_type: Option<String>,
+    /// Whether the file says that its pixels are signed or unsigned.
+    pub(crate) is_sign_known: bool,
+    /// The padding range has its limit on the side of the image's values.
+    pub(crate) is_padding_limit_wrong: bool,
+    pub(crate) placing: Placing,
+    /// What is to be said of other files of the series, which were left out.
+    pub(crate) notes: Vec<String>,
     pub(crate) is_cut_off: bool,
     pub(crate) frames: Vec<Frame>,
     /// When each frame was taken.
@@ -119,12 +135,13 @@ impl Header {
         let pixels = e
             .pixels
             .ok_or_else(|| FileError::NoImage("no pixels".to_owned()))?;
-        let layout = layout(e)?;
+        let mut layout = layout(e)?;
         let image_type = image_type(e);
         if image_type.split('\\').any(|t| t == "LOCALIZER") {
             return Err(FileError::Localizer);
         }
-        let (frames, is_placed_by_location) = frames(e)?;
+        let (frames, placing) = frames(e)?;
+        let is_padding_limit_wrong = hounsfield::read_padding(e, &mut layout, &frames);
         let needed = layout.frame_bytes() * frames.len() as u64;
         let available = parsed.size.saturating_sub(pixels.offset);
         let native = pixels.length;
@@ -146,8 +163,11 @@ impl Header {
             layout,
             storage,
             stored: parsed.stored,
-            rescale_type: rescale_type(e),
-            is_placed_by_location,
+            foreign_type: foreign_type(e),
+            is_sign_known: matches!(e.u16(tags::PIXEL_REPRESENTATION), Some(0 | 1)),
+            is_padding_limit_wrong,
+            placing,
+            notes: Vec::new(),
             is_cut_off: native.is_some() && available < needed,
             frames,
             moments: moments(e),
@@ -181,10 +201,11 @@ fn image_type(e: &Elements) -> String {
     parts.join("\\")
 }
 
-/// The rescale type of the image, or of its first frame.
-fn rescale_type(e: &Elements) -> Option<String> {
-    let mut groups = [&e.values, &e.shared].into_iter().chain(e.frames.first());
-    groups.find_map(|values| text(values, tags::RESCALE_TYPE))
+/// The first rescale type of the image or one of its frames that is not HU.
+fn foreign_type(e: &Elements) -> Option<String> {
+    let groups = [&e.values, &e.shared].into_iter().chain(&e.frames);
+    let mut kinds = groups.filter_map(|values| text(values, tags::RESCALE_TYPE));
+    kinds.find(|kind| kind != "HU")
 }
 
 fn layout(e: &Elements) -> Result<Layout, FileError> {
@@ -214,19 +235,6 @@ fn layout(e: &Elements) -> Result<Layout, FileError> {
         )));
     }
     let is_signed = e.u16(tags::PIXEL_REPRESENTATION) == Some(1);
-    let value = |tag| {
-        e.u16(tag).map(|v| {
-            if is_signed {
-                i64::from(v.cast_signed())
-            } else {
-                i64::from(v)
-            }
-        })
-    };
-    let padding = value(tags::PIXEL_PADDING_VALUE).map(|a| {
-        let b = value(tags::PIXEL_PADDING_RANGE_LIMIT).unwrap_or(a);
-        (a.min(b), a.max(b))
-    });
     Ok(Layout {
         rows,
         columns,
@@ -234,12 +242,12 @@ fn layout(e: &Elements) -> Result<Layout, FileError> {
         bits_stored,
         high_bit,
         is_signed,
-        padding,
+        padding: None,
     })
 }
 
-/// The frames of an image, and whether they had to be placed by their slice location.
-fn frames(e: &Elements) -> Result<(Vec<Frame>, bool), FileError> {
+/// The frames of an image, and what they are placed by.
+fn frames(e: &Elements) -> Result<(Vec<Frame>, Placing), FileError> {
     let count = e
         .text(tags::NUMBER_OF_FRAMES)
         .and_then(|n| n.parse::<usize>().ok())
@@ -256,7 +264,7 @@ fn frames(e: &Elements) -> Result<(Vec<Frame>, bool), FileError> {
             .iter()
             .map(|own| frame([own, &e.shared, &e.values], None))
             .collect();
-        return Ok((all?, false));
+        return Ok((all?, Placing::Position));
     }
     if count != 1 {
         return Err(FileError::Geometry(format!(
@@ -264,32 +272,35 @@ fn frames(e: &Elements) -> Result<(Vec<Frame>, bool), FileError> {
         )));
     }
     let location = e.numbers::<1>(tags::SLICE_LOCATION).map(|[l]| l);
-    let is_placed_by_location = e.numbers::<3>(tags::IMAGE_POSITION_PATIENT).is_none();
-    Ok((
-        vec![frame([&e.values, &e.shared, &e.values], location)?],
-        is_placed_by_location,
-    ))
+    let placing = if e.text(tags::IMAGE_POSITION_PATIENT).is_some() {
+        Placing::Position
+    } else if e.text(tags::IMAGE_ORIENTATION_PATIENT).is_some() {
+        Placing::OrientationAndLocation
+    } else {
+        Placing::Location
+    };
+    let frame = frame([&e.values, &e.shared, &e.values], location)?;
+    Ok((vec![frame], placing))
 }
 
 /// One frame from the values that are its own, then the shared ones, then the image's.
 fn frame(values: [&Values; 3], location: Option<f64>) -> Result<Frame, FileError> {
-    fn first<const N: usize>(values: [&Values; 3], tag: Tag) -> Option<[f64; N]> {
-        values.into_iter().find_map(|v| numbers::<N>(v, tag))
-    }
     let geometry = |text: &str| FileError::Geometry(text.to_owned());
-    let orientation = first::<6>(values, tags::IMAGE_ORIENTATION_PATIENT);
-    let orientation = match orientation {
-        Some(o) => unit_axes(o)?,
-        None if location.is_some() => [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-        None => return Err(geometry("no orientation (Image Orientation Patient)")),
+    let position = given::<3>(values, tags::IMAGE_POSITION_PATIENT, "position")?;
+    let orientation = given::<6>(values, tags::IMAGE_ORIENTATION_PATIENT, "orientation")?;
+    let orientation = match (orientation, position, location) {
+        (Some(o), ..) => unit_axes(o)?,
+        // Nothing but the location is known: axial, head first, supine; the series says so.
+        (None, None, Some(_)) => [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        _ => return Err(geometry("no orientation (Image Orientation Patient)")),
     };
     let normal = cross(orientation[0], orientation[1]);
-    let position = first::<3>(values, tags::IMAGE_POSITION_PATIENT)
+    let position = position
         .or_else(|| location.map(|l| scaled(normal, l)))
         .ok_or_else(|| geometry("no position (Image Position Patient)"))?;
     // The standard writes the distance between rows first.
-    let [between_rows, between_columns] =
-        first::<2>(values, tags::PIXEL_SPACING).ok_or_else(|| geometry("no pixel spacing"))?;
+    let spacing = given::<2>(values, tags::PIXEL_SPACING, "pixel spacing")?;
+    let [between_rows, between_columns] = spacing.ok_or_else(|| geometry("no pixel spacing"))?;
     if !SPACING_MM.contains(&between_rows) || !SPACING_MM.contains(&between_columns) {
         return Err(FileError::Geometry(format!(
             "pixel spacing {} x {} mm; both must be from 0.001 to 1000",
@@ -303,30 +314,35 @@ fn frame(values: [&Values; 3], location: Option<f64>) -> Result<Frame, FileError
             short(*place)
         )));
     }
-    let [slope] = first::<1>(values, tags::RESCALE_SLOPE).unwrap_or([1.0]);
-    let [intercept] = first::<1>(values, tags::RESCALE_INTERCEPT).unwrap_or([0.0]);
-    if slope == 0.0 {
-        return Err(geometry("rescale slope 0: all pixels would be equal"));
-    }
-    if slope.abs() > MAX_RESCALE || intercept.abs() > MAX_RESCALE {
-        return Err(FileError::Geometry(format!(
-            "rescale slope {} and intercept {}; both must be below {MAX_RESCALE:e}",
-            short(slope),
-            short(intercept)
-        )));
-    }
     Ok(Frame {
         position,
         orientation,
         spacing: [between_columns, between_rows],
-        slope,
-        intercept,
+        rescale: Rescale::read(values)?,
         slice_location: location,
     })
 }
 
+/// The numbers of an element in the first of `values` that has it; an error if they are none.
+pub(crate) fn given<const N: usize>(
+    values: [&Values; 3],
+    tag: Tag,
+    name: &str,
+) -> Result<Option<[f64; N]>, FileError> {
+    let written = |v: &Values| text(v, tag).map(|text| (text, numbers::<N>(v, tag)));
+    match values.into_iter().find_map(written) {
+        None => Ok(None),
+        Some((_, Some(numbers))) => Ok(Some(numbers)),
+        Some((text, None)) => Err(FileError::Geometry(format!(
+            "no {name}: `{}` is not {N} {} with a decimal point",
+            text.chars().take(MAX_QUOTED).collect::<String>(),
+            if N == 1 { "number" } else { "numbers" },
+        ))),
+    }
+}
+
 /// A number without hundreds of zeros.
-fn short(number: f64) -> String {
+pub(crate) fn short(number: f64) -> String {
     if number == 0.0 || (1e-4..1e9).contains(&number.abs()) {
         number.to_string()
     } else {

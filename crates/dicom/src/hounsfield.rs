@@ -5,7 +5,14 @@
 //! stored value, before the rescale, and becomes air. MONOCHROME1 says how to show an image,
 //! not what its values mean, and changes nothing.
 
-use crate::header::{Frame, Layout};
+use dicom_dictionary_std::tags;
+
+use crate::elements::{Elements, Values};
+use crate::error::FileError;
+use crate::header::{Frame, Layout, given, short};
+
+/// Largest rescale slope and intercept; with 32-bit pixels the values stay within 32-bit floats.
+const MAX_RESCALE: f64 = 1e12;
 
 /// What padding becomes (HU).
 pub(crate) const AIR_HU: i16 = -1000;
@@ -14,13 +21,94 @@ pub(crate) const AIR_HU: i16 = -1000;
 const MAX_WHOLE_SLOPE: f64 = 8192.0;
 const MAX_WHOLE_INTERCEPT: f64 = 1e9;
 
+/// The straight line from stored values to Hounsfield units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Rescale {
+    pub(crate) slope: f64,
+    pub(crate) intercept: f64,
+    pub(crate) known: Known,
+}
+
+/// How much of a rescale the file gives; what it does not is slope 1 and intercept 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Known {
+    Nothing,
+    Slope,
+    Intercept,
+    Both,
+}
+
+impl Rescale {
+    /// From the values that are a frame's own, then the shared ones, then the image's.
+    pub(crate) fn read(values: [&Values; 3]) -> Result<Self, FileError> {
+        let slope = given::<1>(values, tags::RESCALE_SLOPE, "rescale slope")?;
+        let intercept = given::<1>(values, tags::RESCALE_INTERCEPT, "rescale intercept")?;
+        let known = match (slope, intercept) {
+            (Some(_), Some(_)) => Known::Both,
+            (None, Some(_)) => Known::Intercept,
+            (Some(_), None) => Known::Slope,
+            (None, None) => Known::Nothing,
+        };
+        let ([slope], [intercept]) = (slope.unwrap_or([1.0]), intercept.unwrap_or([0.0]));
+        if slope == 0.0 {
+            let reason = "rescale slope 0: all pixels would be equal";
+            return Err(FileError::Geometry(reason.to_owned()));
+        }
+        if slope.abs() > MAX_RESCALE || intercept.abs() > MAX_RESCALE {
+            return Err(FileError::Geometry(format!(
+                "rescale slope {} and intercept {}; both must be below {MAX_RESCALE:e}",
+                short(slope),
+                short(intercept)
+            )));
+        }
+        Ok(Self {
+            slope,
+            intercept,
+            known,
+        })
+    }
+
+    fn hu(self, stored: i64) -> f64 {
+        stored as f64 * self.slope + self.intercept
+    }
+}
+
+/// Reads a file's padding into its layout; true if the range's limit was wrong and is not used.
+///
+/// The limit lies beyond the padding value, away from the image's values (PS3.3 C.7.5.1.1.2). A
+/// range that runs across water (0 HU) would take the patient for padding.
+pub(crate) fn read_padding(e: &Elements, layout: &mut Layout, frames: &[Frame]) -> bool {
+    let is_signed = layout.is_signed;
+    let value = |tag| {
+        e.u16(tag).map(|v| {
+            if is_signed {
+                i64::from(v.cast_signed())
+            } else {
+                i64::from(v)
+            }
+        })
+    };
+    let Some(padding) = value(tags::PIXEL_PADDING_VALUE) else {
+        return false;
+    };
+    let limit = value(tags::PIXEL_PADDING_RANGE_LIMIT).unwrap_or(padding);
+    let crosses_water = |f: &Frame| {
+        let (padding, limit) = (f.rescale.hu(padding), f.rescale.hu(limit));
+        padding.min(limit) < 0.0 && padding.max(limit) > 0.0
+    };
+    let is_wrong = frames.iter().any(crosses_water);
+    let limit = if is_wrong { padding } else { limit };
+    layout.padding = Some((padding.min(limit), padding.max(limit)));
+    is_wrong
+}
+
 /// Whether a frame's Hounsfield units are whole numbers whatever its pixels are.
 pub(crate) fn is_whole(layout: &Layout, frame: &Frame) -> bool {
     layout.bits_allocated <= 16
-        && frame.slope.fract() == 0.0
-        && frame.intercept.fract() == 0.0
-        && frame.slope.abs() <= MAX_WHOLE_SLOPE
-        && frame.intercept.abs() <= MAX_WHOLE_INTERCEPT
+        && frame.rescale.slope.fract() == 0.0
+        && frame.rescale.intercept.fract() == 0.0
+        && frame.rescale.slope.abs() <= MAX_WHOLE_SLOPE
+        && frame.rescale.intercept.abs() <= MAX_WHOLE_INTERCEPT
 }
 
 /// Takes stored values out of their cells.
@@ -100,7 +188,8 @@ impl Voxel for i16 {
 
     /// Only for frames that are [`is_whole`].
     fn convert(bytes: &[u8], layout: &Layout, frame: &Frame, hu: &mut [Self]) -> bool {
-        let (slope, intercept) = (frame.slope as i32, frame.intercept as i32);
+        let rescale = frame.rescale;
+        let (slope, intercept) = (rescale.slope as i32, rescale.intercept as i32);
         let (mut low, mut high) = (i32::MAX, i32::MIN);
         let cells = Cells::new(layout);
         let mut write = |cell: u32, hu: &mut i16| {
@@ -138,9 +227,9 @@ impl Voxel for f32 {
         let width = layout.bits_allocated as usize / 8;
         for (cell, hu) in bytes.chunks_exact(width).zip(hu) {
             let cell = cell.iter().rev().fold(0, |n, b| n << 8 | u32::from(*b));
-            *hu = cells.stored(cell).map_or(f32::from(AIR_HU), |v| {
-                (v as f64 * frame.slope + frame.intercept) as f32
-            });
+            *hu = cells
+                .stored(cell)
+                .map_or(f32::from(AIR_HU), |v| frame.rescale.hu(v) as f32);
         }
         true
     }

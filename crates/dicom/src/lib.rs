@@ -52,6 +52,7 @@ mod jpeg_2000;
 mod line;
 mod moment;
 mod phases;
+mod placed;
 mod plausible;
 mod read;
 mod report;

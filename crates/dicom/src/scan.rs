@@ -12,6 +12,7 @@ use crate::choice::plausible;
 use crate::error::{DicomError, FileError};
 use crate::group::{Grouping, Stack, stacks};
 use crate::header::Header;
+use crate::placed::consistent;
 use crate::series::Series;
 
 /// Kinds of reasons that an error message lists.
@@ -110,6 +111,7 @@ fn find(path: &Path, grouping: Grouping, task: &Task) -> Result<Scan, DicomError
             Err(error) => left_out.push(LeftOut::new(file, &error)),
         }
     }
+    let usable = consistent(usable, grouping, &mut left_out);
     let mut series = Vec::new();
     for stack in stacks(usable, grouping, task)? {
         add(stack, &cut_off, &mut series, &mut left_out);

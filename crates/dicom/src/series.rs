@@ -193,7 +193,7 @@ fn observations(slices: &[Slice], line: &Line) -> Vec<String> {
             uids.len()
         ));
     }
-    let notes: BTreeSet<&String> = slices.iter().filter_map(|s| s.header.note.as_ref()).collect();
+    let notes: BTreeSet<&String> = slices.iter().flat_map(|s| &s.header.notes).collect();
     found.extend(notes.into_iter().cloned());
     let any = |placing: Placing| slices.iter().any(|s| s.header.placing == placing);
     if any(Placing::Location) {
