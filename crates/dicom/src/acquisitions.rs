@@ -53,7 +53,7 @@ pub(crate) fn by_acquisition(slices: Vec<Slice>) -> Vec<Vec<Slice>> {
     let volumes = volumes(&spans, overlap);
     let count = volumes.iter().max().map_or(1, |last| last + 1);
     let are_stacks = spans.iter().all(|s| s.is_stack);
-    if count == 1 || (!are_stacks && is_one_stack(&slices)) {
+    if !are_stacks && is_one_stack(&slices) {
         return vec![slices];
     }
     let volumes: BTreeMap<Option<i64>, usize> = places.into_keys().zip(volumes).collect();
@@ -61,7 +61,22 @@ pub(crate) fn by_acquisition(slices: Vec<Slice>) -> Vec<Vec<Slice>> {
     for slice in slices {
         parts[volumes[&slice.header.acquisition]].push(slice);
     }
-    parts
+    parts.into_iter().flat_map(without_shared).collect()
+}
+
+/// Takes out the slices at places where an acquisition begins that another ends at: they are
+/// few, and would be mistaken for another time of the whole.
+fn without_shared(part: Vec<Slice>) -> Vec<Vec<Slice>> {
+    let mut parts = [Vec::new(), Vec::new()];
+    for slice in part {
+        let own: &Vec<Slice> = &parts[0];
+        let is_shared = own.last().is_some_and(|last| {
+            slice.along_mm - last.along_mm <= SAME_PLACE_MM
+                && last.header.acquisition != slice.header.acquisition
+        });
+        parts[usize::from(is_shared)].push(slice);
+    }
+    parts.into_iter().filter(|part| !part.is_empty()).collect()
 }
 
 fn span(places: &[f64]) -> Span {

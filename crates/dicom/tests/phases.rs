@@ -199,6 +199,20 @@ fn a_copy_does_not_shatter_a_scan_in_steps() {
 }
 
 #[test]
+fn rotations_that_share_their_boundary_are_one_stack() {
+    let folder = tempfile::tempdir().unwrap();
+    for number in 0..6 {
+        for k in 4 * number..=4 * number + 4 {
+            let image = rotation(number, image(k, number as u16));
+            image.write(&folder.path().join(format!("{number}{k}")));
+        }
+    }
+    let scan = scan(folder.path());
+    assert_eq!(scan.series[0].slices_found, 25);
+    assert!(!warns(&scan, GUESSED) && !warns(&scan, "different slices"));
+}
+
+#[test]
 fn missing_slices_do_not_shatter_a_scan_in_steps() {
     let folder = stepping(24);
     for k in 10..15 {
