@@ -56,7 +56,7 @@ impl Source {
     /// # Errors
     /// [`Error::Dicom`], [`Error::VolumeFile`].
     pub fn open(path: &Path, one_series: bool, task: &Task) -> Result<Self, Error> {
-        if VolumeFile::is_one(path) {
+        if VolumeFile::is_one(path) || is_named_as_volume(path) {
             let file = VolumeFile::open(path)?;
             return Ok(Self {
                 contents: Contents {
@@ -117,6 +117,8 @@ impl Source {
             Pixels::Folder(scan) => {
                 let series = scan.choose(choice)?;
                 let (volume, warnings) = read_series(series, task)?;
+                let doubts = doubts(volume.hu_range());
+                let warnings = warnings.into_iter().chain(doubts).collect();
                 (SeriesReport::clone(series), volume, warnings)
             }
             Pixels::File(file) => {
@@ -134,6 +136,33 @@ impl Source {
         series.hu_range = Some([low, high]);
         series.warnings = warnings;
         Ok(Reading { volume, series })
+    }
+}
+
+/// Whether a file's name says that it is a volume: one too damaged to be known by its content is
+/// then told to be that, and not a DICOM file that fails.
+fn is_named_as_volume(path: &Path) -> bool {
+    const ENDINGS: [&str; 4] = [".nii", ".nii.gz", ".nrrd", ".nhdr"];
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let name = name.to_ascii_lowercase();
+    path.is_file() && ENDINGS.iter().any(|ending| name.ends_with(ending))
+}
+
+/// Highest value (HU) that scanners give: metal on the extended scale ends at 30710.
+const MAX_HU: f64 = 31_000.0;
+
+/// What the values of a DICOM series say against their being Hounsfield units.
+fn doubts((low, high): (f64, f64)) -> Option<String> {
+    if low >= 0.0 {
+        Some(format!(
+            "no value is below {low}: these may not be Hounsfield units (air is at -1000); check the threshold"
+        ))
+    } else if high > MAX_HU {
+        Some(format!(
+            "values up to {high} HU: padding or the sign of the pixels may be missing from the files; check the threshold"
+        ))
+    } else {
+        None
     }
 }
 
@@ -175,5 +204,18 @@ fn report(file: &VolumeFile) -> SeriesReport {
         hu_range: None,
         warnings: file.warnings().to_vec(),
         files: vec![file.path().to_owned()],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_that_no_ct_has_are_doubted() {
+        assert_eq!(doubts((-1024.0, 3071.0)), None);
+        assert_eq!(doubts((-10_240.0, 30_710.0)), None);
+        assert!(doubts((0.0, 4095.0)).is_some_and(|d| d.contains("no value is below 0")));
+        assert!(doubts((-1024.0, 64_511.0)).is_some_and(|d| d.contains("up to 64511 HU")));
     }
 }

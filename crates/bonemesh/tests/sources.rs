@@ -260,3 +260,32 @@ fn names_of_files_cannot_drive_the_terminal() {
         "{said}"
     );
 }
+
+#[test]
+fn a_damaged_volume_file_is_told_to_be_damaged() {
+    let folder = TempDir::new().unwrap();
+    let damaged_gzip: &[u8] = &[0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 3, 0xff, 0xff, 0xff];
+    for (name, bytes, says) in [
+        ("head.nii.gz", damaged_gzip, "cannot be inflated"),
+        ("head.NII", &[0; 400], "its first bytes are not those of"),
+        ("head.nii", &[], "it is empty"),
+        ("head.nrrd", b"NRR", "its first bytes are not those of"),
+    ] {
+        let path = folder.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        let refused = message(&bonemesh(&["info", path.to_str().unwrap()]));
+        assert!(
+            refused.contains(name) && refused.contains(says),
+            "{refused}"
+        );
+        assert!(
+            refused.contains("copy or export the file again"),
+            "{refused}"
+        );
+        assert!(!refused.contains("DICOM"), "{refused}");
+    }
+    // A series in a folder of such a name is one all the same.
+    let series = folder.path().join("series.nii");
+    copy(&series);
+    assert_eq!(info(&series, &[])["recommended"], 1);
+}
