@@ -15,6 +15,9 @@ use crate::header::Header;
 use crate::placed::consistent;
 use crate::series::Series;
 
+/// Why a file that is alone in its series is left out.
+const SINGLE: &str = "a single slice; a volume needs at least 2 of one orientation and size";
+
 /// Kinds of reasons that an error message lists.
 const MAX_REASONS: usize = 4;
 
@@ -246,7 +249,7 @@ fn add(
     left_out: &mut Vec<LeftOut>,
 ) {
     for copy in &stack.copies {
-        let reason = "the same slice is there already";
+        let reason = "at the place of another slice, and the same or unreadable";
         left_out.push(LeftOut::new(&copy.header.path, &reason));
     }
     for surplus in &stack.surplus {
@@ -255,8 +258,7 @@ fn add(
     }
     let files: Vec<PathBuf> = stack.slices.iter().map(|s| s.header.path.clone()).collect();
     if files.len() < 2 {
-        let reason = "a single slice; a volume needs at least 2 of one orientation and size";
-        left_out.extend(files.iter().map(|f| LeftOut::new(f, &reason)));
+        left_out.extend(files.iter().map(|f| LeftOut::new(f, &SINGLE)));
         return;
     }
     match Series::new(stack) {
@@ -283,6 +285,11 @@ fn summary(left_out: &[LeftOut]) -> String {
     for file in left_out {
         *counts.entry(&file.reason).or_default() += 1;
     }
+    let broken_uids = if counts.get(SINGLE).is_some_and(|singles| *singles > 2) {
+        "; if they are slices of one scan with broken UIDs, take the folder as one series"
+    } else {
+        ""
+    };
     let mut counts: Vec<(&str, usize)> = counts.into_iter().collect();
     counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
     let more = if counts.len() > MAX_REASONS {
@@ -295,5 +302,5 @@ fn summary(left_out: &[LeftOut]) -> String {
         .take(MAX_REASONS)
         .map(|(reason, count)| format!("{count} left out: {reason}"))
         .collect();
-    parts.join("; ") + more
+    parts.join("; ") + more + broken_uids
 }

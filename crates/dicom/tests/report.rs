@@ -66,7 +66,12 @@ fn broken_uids_make_one_series_where_it_is_asked_for() {
         )
     });
     let strict = find_series(folder.path(), &Task::default());
-    assert!(matches!(strict, Err(DicomError::NoSeries { .. })));
+    let strict = strict.unwrap_err();
+    assert!(matches!(strict, DicomError::NoSeries { .. }));
+    assert!(
+        strict.to_string().contains("take the folder as one series"),
+        "{strict}"
+    );
     let scan = find_one_series(folder.path(), &Task::default()).unwrap();
     assert_eq!(scan.series.len(), 1);
     let (volume, warnings) = read_series(&scan.series[0], &Task::default()).unwrap();

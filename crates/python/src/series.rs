@@ -99,7 +99,7 @@ impl Series {
         self.0.slice_positions_mm.clone()
     }
 
-    /// Where slices are missing: position of the slice before (mm), and how many.
+    /// Where slices are missing or wide apart: position of the slice before (mm), and how many lack.
     #[getter]
     fn gaps(&self) -> Vec<(f64, usize)> {
         self.0
