@@ -204,7 +204,7 @@ fn observations(slices: &[Slice], line: &Line) -> Vec<String> {
     }
     if any(Placing::OrientationAndLocation) {
         found.push(
-            "no Image Position Patient: slices are placed by Slice Location, sideways place unknown"
+            "no Image Position Patient: slices are placed by Slice Location, sideways place unknown; where the scanner counts the other way the body is mirrored, check left and right against the images"
                 .to_owned(),
         );
     }
