@@ -155,7 +155,7 @@ const MAX_HU: f64 = 31_000.0;
 fn doubts((low, high): (f64, f64)) -> Option<String> {
     if low >= 0.0 {
         Some(format!(
-            "no value is below {low}: these may not be Hounsfield units (air is at -1000); check the threshold"
+            "no value is below {low:.0}: these may not be Hounsfield units (air is at -1000); check the threshold"
         ))
     } else if high > MAX_HU {
         Some(format!(
