@@ -1,5 +1,6 @@
 //! What the header of one image says, checked: a [`Header`] has everything a slice needs.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -23,6 +24,10 @@ const SPACING_MM: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
 
 /// Characters of a wrong value that are quoted.
 const MAX_QUOTED: usize = 80;
+
+/// Most directions, to a hundredth, in which the frames of one image may lie: stacks of a scan
+/// with its localizers take a dozen.
+const MAX_PLANES: usize = 256;
 
 /// Farthest place from the scanner's origin (mm), a kilometre.
 const MAX_PLACE_MM: f64 = 1e6;
@@ -246,6 +251,26 @@ fn layout(e: &Elements) -> Result<Layout, FileError> {
     })
 }
 
+/// Refuses images whose frames lie in no common planes: sorting them would take its time and give
+/// no volume.
+fn check_planes(frames: &[Frame]) -> Result<(), FileError> {
+    let plane = |f: &Frame| {
+        let axes = f.orientation.as_flattened().iter();
+        axes.map(|c| (c * 100.0).round() as i32)
+            .collect::<Vec<i32>>()
+    };
+    let mut planes = BTreeSet::new();
+    for frame in frames {
+        planes.insert(plane(frame));
+        if planes.len() > MAX_PLANES {
+            return Err(FileError::Geometry(format!(
+                "its frames lie in more than {MAX_PLANES} directions"
+            )));
+        }
+    }
+    Ok(())
+}
+
 /// The frames of an image, and what they are placed by.
 fn frames(e: &Elements) -> Result<(Vec<Frame>, Placing), FileError> {
     let count = e
@@ -264,7 +289,9 @@ fn frames(e: &Elements) -> Result<(Vec<Frame>, Placing), FileError> {
             .iter()
             .map(|own| frame([own, &e.shared, &e.values], None))
             .collect();
-        return Ok((all?, Placing::Position));
+        let all = all?;
+        check_planes(&all)?;
+        return Ok((all, Placing::Position));
     }
     if count != 1 {
         return Err(FileError::Geometry(format!(

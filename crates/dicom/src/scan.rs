@@ -120,6 +120,8 @@ fn find(path: &Path, grouping: Grouping, task: &Task) -> Result<Scan, DicomError
         add(stack, &cut_off, &mut series, &mut left_out);
     }
     left_out.sort();
+    // A file of several frames is named once for each reason.
+    left_out.dedup();
     if series.is_empty() {
         return Err(no_series(path, &left_out));
     }
