@@ -26,14 +26,15 @@ fn group(
 
 /// Frames of the series of [`Image::new`] in `order`; slice `k` has the rescale slope `k + 1`.
 fn enhanced(order: &[usize]) -> Image {
+    turned(order, |_| 0.0)
+}
+
+/// The same, slice `k` turned by `angle(k)` (radians) about the normal.
+fn turned(order: &[usize], angle: impl Fn(usize) -> f64) -> Image {
     let mut shared = InMemDicomObject::new_empty();
     shared.put(group(
         tags::PIXEL_MEASURES_SEQUENCE,
         &[(tags::PIXEL_SPACING, "0.75\\0.5")],
-    ));
-    shared.put(group(
-        tags::PLANE_ORIENTATION_SEQUENCE,
-        &[(tags::IMAGE_ORIENTATION_PATIENT, "1\\0\\0\\0\\1\\0")],
     ));
     let frames: Vec<InMemDicomObject> = order
         .iter()
@@ -43,6 +44,14 @@ fn enhanced(order: &[usize]) -> Image {
             frame.put(group(
                 tags::PLANE_POSITION_SEQUENCE,
                 &[(tags::IMAGE_POSITION_PATIENT, &position)],
+            ));
+            let (s, c) = angle(*k).sin_cos();
+            frame.put(group(
+                tags::PLANE_ORIENTATION_SEQUENCE,
+                &[(
+                    tags::IMAGE_ORIENTATION_PATIENT,
+                    &format!("{c:.6}\\{s:.6}\\0\\{:.6}\\{c:.6}\\0", -s),
+                )],
             ));
             frame.put(group(
                 tags::PIXEL_VALUE_TRANSFORMATION_SEQUENCE,
@@ -161,4 +170,14 @@ fn phases_of_a_moving_patient_are_one_volume_each() {
             series.warnings
         );
     }
+}
+
+#[test]
+fn frames_in_hundreds_of_directions_are_no_volume() {
+    let folder = tempfile::tempdir().unwrap();
+    let order: Vec<usize> = (0..600).collect();
+    let image = turned(&order, |k| k as f64 / 100.0);
+    image.write(&folder.path().join("all"));
+    let error = error(folder.path()).to_string();
+    assert!(error.contains("more than 256 directions"), "{error}");
 }
