@@ -113,12 +113,10 @@ impl Source {
     /// # Errors
     /// [`Error::Dicom`], [`Error::VolumeFile`].
     pub fn read(&self, choice: Option<&SeriesChoice>, task: &Task) -> Result<Reading, Error> {
-        let (mut series, volume, warnings) = match &self.pixels {
+        let (mut series, volume, mut warnings) = match &self.pixels {
             Pixels::Folder(scan) => {
                 let series = scan.choose(choice)?;
                 let (volume, warnings) = read_series(series, task)?;
-                let doubts = doubts(volume.hu_range());
-                let warnings = warnings.into_iter().chain(doubts).collect();
                 (SeriesReport::clone(series), volume, warnings)
             }
             Pixels::File(file) => {
@@ -133,6 +131,10 @@ impl Source {
             }
         };
         let (low, high) = volume.hu_range();
+        // Files with a whole volume say it themselves.
+        if matches!(self.pixels, Pixels::Folder(_)) {
+            warnings.extend(doubts((low, high)));
+        }
         series.hu_range = Some([low, high]);
         series.warnings = warnings;
         Ok(Reading { volume, series })
