@@ -1,136 +1,120 @@
-"""Times `bonemesh render` beside the published method, run by run in turn, and writes a table.
+"""Times Bonemesh beside what else does its work, run by run in turn, and writes the table.
 
-Its reading is timed beside SimpleITK's series reader, in the same runs.
+usage: bench.py --bonemesh BINARY --examples DIR --peers DIR --out DIR --runs N --hu HU NAME=DICOM_DIR...
 
-usage: bench.py BONEMESH OUT_DIR RUNS HU NAME=DICOM_DIR...
-
-Whole processes, folder to STL; peak memory is the operating system's own figure of each process.
+Seconds of steps are what the programs themselves report, peak memory is the system's own figure of
+each process. `bench.md` and `bench.json` go to the folder `--out`.
 """
 
+import argparse
+import dataclasses
 import json
-import os
-import platform
-import statistics
-import subprocess
 import sys
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 
-PEER = Path(__file__).with_name("published_method.py")
-READER = Path(__file__).with_name("simpleitk_reading.py")
-STEPS = [
-    "read",
-    "edges",
-    "cloud",
-    "neighbours",
-    "tetrahedra",
-    "surface",
-    "write",
-    "total",
-]
+import bench_rows as of
+from bench_details import details
+from bench_machine import machine
+from bench_process import Measured
+from bench_programs import THREADS, Tools
+from bench_table import Row, beside, markdown
 
 
-def run(command: list[str]) -> dict:
-    """The command's JSON report with the process's peak memory in MiB."""
-    with tempfile.TemporaryFile() as out:
-        process = subprocess.Popen(command, stdout=out)
-        _, status, usage = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        if process.returncode:
-            sys.exit(f"error: {' '.join(command)} ended with {process.returncode}")
-        out.seek(0)
-        report = json.loads(out.read().splitlines()[-1])
-    return report | {"peak_mib": usage.ru_maxrss / 1024}
+def say(text: str) -> None:
+    """Tells who waits."""
+    print(f"   {text}", file=sys.stderr, flush=True)
 
 
-def measure(bonemesh: str, folder: str, hu: str, runs: int) -> dict[str, list[dict]]:
-    """All programs in turn, `runs` times."""
-    found: dict[str, list[dict]] = {"bonemesh": [], "published": [], "simpleitk": []}
+def parsed() -> argparse.Namespace:
+    """The command line."""
+    parser = argparse.ArgumentParser()
+    for word in ["--bonemesh", "--hu"]:
+        parser.add_argument(word, required=True)
+    for word in ["--examples", "--peers", "--out"]:
+        parser.add_argument(word, required=True, type=Path)
+    parser.add_argument("--runs", required=True, type=int)
+    parser.add_argument("folders", nargs="+", metavar="NAME=DICOM_DIR")
+    return parser.parse_args()
+
+
+def folder_rows(
+    words: argparse.Namespace, tools: Tools
+) -> tuple[dict[str, dict[str, list[Row]]], dict[str, Measured]]:
+    """Of each folder the rows of its subjects, and what they were made of."""
+    rows, found = {}, {}
+    for name, folder in (named.split("=", 1) for named in words.folders):
+        say(name)
+        with tempfile.TemporaryDirectory() as scratch:
+            place = Path(scratch)
+            measured = of.measure_folder(tools, folder, words.hu, words.runs, place)
+            rows[name] = {
+                "tetrahedra": of.tetrahedra_rows(name, measured),
+                "surface": [of.surface_row(name, measured)],
+                "line": of.line_rows(name, measured),
+                "threads": of.thread_rows(
+                    name, tools, folder, words.hu, measured, place
+                ),
+            }
+        found[name] = measured
+    return rows, found
+
+
+def other_rows(
+    words: argparse.Namespace, tools: Tools
+) -> tuple[list[Row], dict[str, Measured]]:
+    """Random points and growth."""
     with tempfile.TemporaryDirectory() as scratch:
-        for _ in range(runs):
-            ours = [
-                bonemesh,
-                "render",
-                folder,
-                "--hu",
-                hu,
-                "--method",
-                "alpha",
-                "--json",
-                "-o",
-            ]
-            found["bonemesh"].append(run([*ours, f"{scratch}/ours.stl"]))
-            peer = [sys.executable, str(PEER), folder, hu, f"{scratch}/peer.stl"]
-            found["published"].append(run(peer))
-            found["simpleitk"].append(run([sys.executable, str(READER), folder]))
-    return found
+        place = Path(scratch)
+        say("random points")
+        free = of.measure_random(tools, words.runs, place)
+        say("growth")
+        growth = of.measure_growth(tools, words.hu, words.runs, place)
+    rows = [*of.random_rows(free), *of.growth_rows(growth)]
+    return rows, {"random points": free, "growth": growth}
 
 
-def median(reports: list[dict], *keys: str) -> float:
-    def value(report: dict) -> float:
-        for key in keys:
-            report = report[key]
-        return float(report)
-
-    return statistics.median(value(r) for r in reports)
-
-
-def row(name: str, ours: float, peer: float, unit: str) -> str:
-    ratio = f"{peer / ours:.1f}x" if ours > 0 else "-"
-    return f"| {name} | {ours:.3g} {unit} | {peer:.3g} {unit} | {ratio} |"
-
-
-def table(name: str, found: dict[str, list[dict]]) -> str:
-    ours, peer = found["bonemesh"], found["published"]
-    lines = [
-        f"### {name}",
-        "",
-        "| | Bonemesh | published method | ratio |",
-        "|---|---|---|---|",
-    ]
-    lines += [
-        row(s, median(ours, "seconds", s), median(peer, "seconds", s), "s")
-        for s in STEPS
-    ]
-    lines.append(
-        row("peak memory", median(ours, "peak_mib"), median(peer, "peak_mib"), "MiB")
+def heading(words: argparse.Namespace, place: Mapping[str, str | int]) -> str:
+    """The machine and how was measured."""
+    runs = f"medians of {words.runs} runs in turn" if words.runs > 1 else "one run"
+    return (
+        f"{place['processor']}, {place['cores']} cores, {place['system']}; {place['rust']}, {place['cpp']}. "
+        f"{THREADS} threads, {words.hu} HU; {runs} (of Qhull and Open3D always one)."
     )
-    for key in ["points", "alpha_mm", "tetrahedra", "triangles", "volume_mm3"]:
-        a, b = median(ours, key), median(peer, key)
-        lines.append(f"| {key} | {a:.10g} | {b:.10g} | {(a / b - 1) * 100:+.4f} % |")
-    lines.append(
-        f"| watertight | {ours[0]['watertight']} | {peer[0]['watertight']} | |"
-    )
-    reader = found["simpleitk"]
-    lines += [
-        "",
-        "| reading the series | Bonemesh | SimpleITK | ratio |",
-        "|---|---|---|---|",
-    ]
-    for step, of_reader in [
-        ("files found and decoded", "read"),
-        ("SimpleITK's decoding alone", "decode"),
-    ]:
-        seconds = median(ours, "seconds", "read"), median(reader, "seconds", of_reader)
-        lines.append(row(step, *seconds, "s"))
-    return "\n".join(lines) + "\n"
 
 
-def main(bonemesh: str, out: str, runs: str, hu: str, *folders: str) -> None:
-    cores = os.cpu_count()
-    head = f"{platform.system()} {platform.machine()}, {cores} cores; medians of {runs} runs in turn; {hu} HU"
-    text, data = [f"## Folder to STL, method alpha\n\n{head}\n"], {}
-    for named in folders:
-        name, folder = named.split("=", 1)
-        data[name] = measure(bonemesh, folder, hu, int(runs))
-        text.append(table(name, data[name]))
-        print(text[-1], flush=True)
-    target = Path(out)
-    (target / "bench.md").write_text("\n".join(text))
-    (target / "bench.json").write_text(
-        json.dumps({"machine": head, "runs": data}, indent=1)
-    )
+def main() -> None:
+    """Prints the tables and writes them beside the figures they were made of."""
+    words = parsed()
+    tools = Tools(words.bonemesh, words.examples, words.peers)
+    by_folder, measured = folder_rows(words, tools)
+    others, more = other_rows(words, tools)
+    subjects = ["tetrahedra", "surface", "line", "threads"]
+    rows = [r for s in subjects for of_one in by_folder.values() for r in of_one[s]]
+    rows += others
+    columns = {
+        of.titled(name, measured[name]): of_one["tetrahedra"]
+        for name, of_one in by_folder.items()
+    }
+    surfaces = [row for of_one in by_folder.values() for row in of_one["surface"]]
+    place = machine()
+    text = f"{heading(words, place)}\n\n{beside(columns, surfaces)}\n{markdown(rows)}"
+    print(text)
+    steps = "\n".join(details(name, m) for name, m in measured.items())
+    (words.out / "bench.md").write_text(f"{text}\n{steps}", encoding="utf-8")
+    data = {
+        "machine": place,
+        "threads": THREADS,
+        "runs": words.runs,
+        "threshold_hu": float(words.hu),
+        "rows": [dataclasses.asdict(row) for row in rows],
+        "measured": {
+            name: dataclasses.asdict(m) for name, m in (measured | more).items()
+        },
+    }
+    (words.out / "bench.json").write_text(json.dumps(data, indent=1), encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main()
