@@ -63,24 +63,46 @@ def folder_rows(
 
 def other_rows(
     words: argparse.Namespace, tools: Tools
-) -> tuple[list[Row], dict[str, Measured]]:
-    """Random points and growth."""
+) -> tuple[dict[str, list[Row]], dict[str, Measured]]:
+    """The same of random points and of growth."""
     with tempfile.TemporaryDirectory() as scratch:
         place = Path(scratch)
         say("random points")
         free = of.measure_random(tools, words.runs, place)
         say("growth")
         growth = of.measure_growth(tools, words.hu, words.runs, place)
-    rows = [*of.random_rows(free), *of.growth_rows(growth)]
+    rows = {"random": of.random_rows(free), "growth": of.growth_rows(growth)}
     return rows, {"random points": free, "growth": growth}
 
 
-def heading(words: argparse.Namespace, place: Mapping[str, str | int]) -> str:
-    """The machine and how was measured."""
+def all_rows(
+    by_folder: dict[str, dict[str, list[Row]]], others: dict[str, list[Row]]
+) -> list[Row]:
+    """Subject by subject."""
+    rows = []
+    for subject in ["tetrahedra", "surface", "random", "line", "growth", "threads"]:
+        rows += others.get(subject, [])
+        for of_one in by_folder.values():
+            rows += of_one.get(subject, [])
+    return rows
+
+
+def engines(measured: Mapping[str, Measured]) -> list[str]:
+    """Names and versions of the engines that ran."""
+    reports = [
+        r for m in measured.values() for each in m.reports.values() for r in each
+    ]
+    return sorted({report["engine"] for report in reports if "engine" in report})
+
+
+def heading(
+    words: argparse.Namespace, place: Mapping[str, str | int], names: list[str]
+) -> str:
+    """The machine, what ran, and how was measured."""
     runs = f"medians of {words.runs} runs in turn" if words.runs > 1 else "one run"
     return (
-        f"{place['processor']}, {place['cores']} cores, {place['system']}; {place['rust']}, {place['cpp']}. "
-        f"{THREADS} threads, {words.hu} HU; {runs} (of Qhull and Open3D always one)."
+        f"{place['processor']}, {place['cores']} cores, {place['system']}; {place['rust']}, {place['cpp']}; "
+        f"{', '.join(names)}.\n{THREADS} threads, {words.hu} HU; {runs} (of Qhull and Open3D always one)."
     )
 
 
@@ -90,16 +112,14 @@ def main() -> None:
     tools = Tools(words.bonemesh, words.examples, words.peers)
     by_folder, measured = folder_rows(words, tools)
     others, more = other_rows(words, tools)
-    subjects = ["tetrahedra", "surface", "line", "threads"]
-    rows = [r for s in subjects for of_one in by_folder.values() for r in of_one[s]]
-    rows += others
+    rows = all_rows(by_folder, others)
     columns = {
         of.titled(name, measured[name]): of_one["tetrahedra"]
         for name, of_one in by_folder.items()
     }
     surfaces = [row for of_one in by_folder.values() for row in of_one["surface"]]
     place = machine()
-    text = f"{heading(words, place)}\n\n{beside(columns, surfaces)}\n{markdown(rows)}"
+    text = f"{heading(words, place, engines(measured))}\n\n{beside(columns, surfaces)}\n{markdown(rows)}"
     print(text)
     steps = "\n".join(details(name, m) for name, m in measured.items())
     (words.out / "bench.md").write_text(f"{text}\n{steps}", encoding="utf-8")

@@ -2,6 +2,7 @@
 
 import os
 import platform
+import re
 import subprocess
 from pathlib import Path
 
@@ -25,14 +26,15 @@ def system() -> str:
 
 
 def compiler(command: str) -> str:
-    """First line of what a compiler says of its version."""
+    """A compiler's name and version."""
     try:
         said = subprocess.run(
             [command, "--version"], capture_output=True, text=True, check=True
         )
     except (OSError, subprocess.CalledProcessError):
         return f"no {command}"
-    return said.stdout.splitlines()[0]
+    number = re.search(r"\d+(\.\d+)+", said.stdout)
+    return f"{command} {number[0] if number else ''}".strip()
 
 
 def machine() -> dict[str, str | int]:
@@ -41,6 +43,6 @@ def machine() -> dict[str, str | int]:
         "processor": processor(),
         "cores": os.cpu_count() or 1,
         "system": system(),
-        "rust": " ".join(compiler("rustc").split()[:2]),
+        "rust": compiler("rustc"),
         "cpp": compiler("g++"),
     }

@@ -99,7 +99,7 @@ def peak_row(name: str, measured: Measured) -> Row:
     other = measured.median(PUBLISHED, "peak_mb")
     has_bar = name == SKULL
     return Row(
-        f"its peak memory, {name}",
+        f"peak memory of `render`, {name}",
         f"{ours:.0f} MB",
         PUBLISHED,
         measured.absent.get(PUBLISHED, "-") if other is None else f"{other:.0f} MB",

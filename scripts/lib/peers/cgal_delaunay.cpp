@@ -9,6 +9,7 @@
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Delaunay_triangulation_cell_base_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/version.h>
 #include <tbb/global_control.h>
 
 #include <chrono>
@@ -37,7 +38,7 @@ static std::vector<Point> read_points(const char* path) {
 template <class T>
 static void report(const T& triangulation, Clock::time_point start, double alpha) {
     const std::chrono::duration<double> seconds = Clock::now() - start;
-    std::printf("{\"seconds\": %.6f, \"cells\": %zu", seconds.count(),
+    std::printf("{\"engine\": \"CGAL %s\", \"seconds\": %.6f, \"cells\": %zu", CGAL_VERSION_STR, seconds.count(),
                 static_cast<std::size_t>(triangulation.number_of_finite_cells()));
     if (alpha > 0) {
         std::size_t kept = 0;

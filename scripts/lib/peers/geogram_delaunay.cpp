@@ -8,6 +8,7 @@
 #include <geogram/basic/command_line.h>
 #include <geogram/basic/command_line_args.h>
 #include <geogram/basic/common.h>
+#include <geogram/basic/environment.h>
 #include <geogram/basic/logger.h>
 #include <geogram/basic/process.h>
 #include <geogram/delaunay/delaunay.h>
@@ -16,6 +17,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <string>
 #include <vector>
 
 int main(int count, char** words) {
@@ -38,5 +40,7 @@ int main(int count, char** words) {
     const auto start = std::chrono::steady_clock::now();
     delaunay->set_vertices(static_cast<GEO::index_t>(coordinates.size() / 3), coordinates.data());
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    std::printf("{\"seconds\": %.6f, \"cells\": %zu}\n", seconds.count(), static_cast<std::size_t>(delaunay->nb_cells()));
+    const std::string version = GEO::Environment::instance()->get_value("version");
+    std::printf("{\"engine\": \"Geogram %s\", \"seconds\": %.6f, \"cells\": %zu}\n", version.c_str(),
+                seconds.count(), static_cast<std::size_t>(delaunay->nb_cells()));
 }

@@ -15,7 +15,11 @@ import numpy as np
 NOT_INSTALLED = 3
 
 
-def gmsh_engine(points: np.ndarray, threads: int) -> Callable[[], int]:
+Engine = tuple[str, Callable[[], int]]
+"""Its name and version, and what is timed: the making and counting of the cells."""
+
+
+def gmsh_engine(points: np.ndarray, threads: int) -> Engine:
     """Gmsh; its algorithm 10 is HXT, without which it takes an older and slower one."""
     import gmsh
 
@@ -24,39 +28,42 @@ def gmsh_engine(points: np.ndarray, threads: int) -> Callable[[], int]:
     gmsh.option.set_number("General.NumThreads", threads)
     gmsh.option.set_number("Mesh.MaxNumThreads3D", threads)
     gmsh.option.set_number("Mesh.Algorithm3D", 10)
-    return lambda: len(gmsh.algorithm.tetrahedralize(points.ravel())[0]) // 4
+    make = gmsh.algorithm.tetrahedralize
+    return f"gmsh {gmsh.__version__}", lambda: len(make(points.ravel())[0]) // 4
 
 
-def scipy_engine(points: np.ndarray, _threads: int) -> Callable[[], int]:
+def scipy_engine(points: np.ndarray, _threads: int) -> Engine:
     """SciPy's Qhull."""
-    from scipy.spatial import Delaunay
+    import scipy
 
-    return lambda: len(Delaunay(points).simplices)
+    make = scipy.spatial.Delaunay
+    return f"SciPy {scipy.__version__}", lambda: len(make(points).simplices)
 
 
-def open3d_engine(points: np.ndarray, _threads: int) -> Callable[[], int]:
+def open3d_engine(points: np.ndarray, _threads: int) -> Engine:
     """Open3D's tetrahedral mesh of a cloud."""
     import open3d
 
     cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(points))
-    create = open3d.geometry.TetraMesh.create_from_point_cloud
-    return lambda: len(create(cloud)[0].tetras)
+    make = open3d.geometry.TetraMesh.create_from_point_cloud
+    return f"Open3D {open3d.__version__}", lambda: len(make(cloud)[0].tetras)
 
 
 ENGINES = {"gmsh": gmsh_engine, "scipy": scipy_engine, "open3d": open3d_engine}
 
 
 def main(engine: str, path: str, threads: str) -> None:
-    """Prints seconds and cells."""
+    """Prints the engine, seconds and cells."""
     points = np.fromfile(path, "<f8").reshape(-1, 3)
     try:
-        tetrahedralize = ENGINES[engine](points, int(threads))
+        name, tetrahedralize = ENGINES[engine](points, int(threads))
     except (ImportError, OSError) as missing:  # OSError: a shared library is missing
         print(f"not installed: {engine} ({missing})", file=sys.stderr)
         sys.exit(NOT_INSTALLED)
     start = time.perf_counter()
     cells = tetrahedralize()
-    print(json.dumps({"seconds": time.perf_counter() - start, "cells": cells}))
+    seconds = time.perf_counter() - start
+    print(json.dumps({"engine": name, "seconds": seconds, "cells": cells}))
 
 
 if __name__ == "__main__":
