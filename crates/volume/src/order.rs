@@ -14,7 +14,7 @@ use std::borrow::Cow;
 
 use bonemesh_task::{Cancelled, Task};
 use ndarray::parallel::prelude::*;
-use ndarray::{Array3, ArrayView3, Axis};
+use ndarray::{Array3, ArrayView2, ArrayView3, ArrayViewMut2, Axis};
 
 use crate::{Affine, Geometry, Volume, Voxels};
 
@@ -24,9 +24,9 @@ const SAME_STEP: f64 = 0.01;
 /// Cosines are compared in whole multiples of this, so that rounding decides nothing.
 const COSINE: f64 = 1e-6;
 
-/// Slices copied at a time: as many 16-bit voxels as a line of the processor's cache holds, so
-/// that an axis that was stored first can become the last without reading each line many times.
-const SLAB: usize = 32;
+/// Side of the squares that are copied at a time: as many 16-bit voxels as a line of the
+/// processor's cache holds, so that of each line that is read or written all is used at once.
+const TILE: usize = 32;
 
 /// Every way to give three axes to the patient's three.
 const ASSIGNMENTS: [[usize; 3]; 6] = [
@@ -165,20 +165,41 @@ where
             view.invert_axis(Axis(axis));
         }
     }
-    let mut turned = Array3::default(view.dim());
+    let mut turned = Array3::from_elem(view.dim(), T::default());
     turned
-        .axis_chunks_iter_mut(Axis(0), SLAB)
+        .axis_chunks_iter_mut(Axis(0), TILE)
         .into_par_iter()
-        .zip(view.axis_chunks_iter(Axis(0), SLAB))
+        .zip(view.axis_chunks_iter(Axis(0), TILE))
         .try_for_each(|(mut into, from)| {
-            // Row by row, so that the slices of a slab share what was read.
-            for (mut into, from) in into.axis_iter_mut(Axis(1)).zip(from.axis_iter(Axis(1))) {
+            // The plane in which stored columns turn into new ones lies along the other axis.
+            let other = Axis(usize::from(slices.axis == 0));
+            for (mut into, from) in into.axis_iter_mut(other).zip(from.axis_iter(other)) {
                 task.check()?;
-                into.assign(&from);
+                if columns.axis == 0 {
+                    into.assign(&from);
+                } else {
+                    copy_by_tiles(&mut into, &from);
+                }
             }
             Ok(())
         })?;
     Ok(turned)
+}
+
+/// Copies a plane whose columns are stored far apart and its rows next to each other.
+fn copy_by_tiles<T: Copy>(into: &mut ArrayViewMut2<'_, T>, from: &ArrayView2<'_, T>) {
+    let (rows, columns) = (Axis(0), Axis(1));
+    for (mut into, from) in into
+        .axis_chunks_iter_mut(rows, TILE)
+        .zip(from.axis_chunks_iter(rows, TILE))
+    {
+        for (mut into, from) in into
+            .axis_chunks_iter_mut(columns, TILE)
+            .zip(from.axis_chunks_iter(columns, TILE))
+        {
+            into.assign(&from);
+        }
+    }
 }
 
 #[cfg(test)]
@@ -211,7 +232,7 @@ mod tests {
                 let last = counts[axes[a]] - 1;
                 at[axes[a]] = if backwards[a] { last - index } else { index };
             }
-            (100 * at[2] + 10 * at[1] + at[0]) as i16
+            (5041 * at[2] + 71 * at[1] + at[0]) as i16
         });
         let geometry = Geometry::new(shape, Affine::from_axes(x, y, z, origin)).unwrap();
         Volume::new(Voxels::I16(hu), geometry).unwrap()
@@ -306,10 +327,17 @@ mod tests {
             backwards in proptest::array::uniform3(proptest::bool::ANY),
             steps in proptest::array::uniform3(prop_oneof![Just(0.5), Just(0.502), Just(0.7), Just(2.0)]),
             counts in proptest::array::uniform3(1..9_usize),
+            // Mostly a corner of a tile, sometimes several tiles.
+            longest in prop_oneof![4 => Just(None), 1 => (0..3_usize, 30..70_usize).prop_map(Some)],
             // Turned about the head-feet axis, also by half a right angle, and sheared by a tilt.
             turn in prop_oneof![Just(0.0), Just(45.0), Just(-30.0)],
             tilt in prop_oneof![Just(0.0), Just(20.0)],
         ) {
+            let mut counts = counts;
+            if let Some((axis, count)) = longest {
+                counts[axis] = count;
+                counts[(axis + 1) % 3] = count - 3;
+            }
             let (s, c) = f64::to_radians(turn).sin_cos();
             let (ts, tc) = f64::to_radians(tilt).sin_cos();
             let directions = [[c, s, 0.0], [-s * tc, c * tc, ts], [0.0, 0.0, 1.0]];
