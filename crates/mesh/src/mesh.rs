@@ -62,6 +62,7 @@ impl TriangleMesh {
     }
 
     /// The three corners (mm) of a triangle of this mesh.
+    #[inline]
     pub fn corners_mm(&self, triangle: [u32; 3]) -> [[f64; 3]; 3] {
         triangle.map(|vertex| self.vertices_mm[vertex as usize])
     }

@@ -20,28 +20,39 @@ const RECORD: usize = 50;
 /// Says what made the file. Must not begin with `solid`, by which readers know ASCII.
 const HEADER: &[u8] = b"binary STL, mm, made by Bonemesh";
 
-/// Writes the header, the count and all triangles.
+/// Writes the header, the count and all triangles; a block is encoded while the one before it is
+/// written.
 pub(super) fn write(file: &mut File, mesh: &TriangleMesh, task: &Task) -> Result<(), Fault> {
-    let mut head = [0; 84];
+    let mut head = vec![0; 84];
     head[..HEADER.len()].copy_from_slice(HEADER);
     head[80..].copy_from_slice(&(mesh.triangles().len() as u32).to_le_bytes());
-    file.write_all(&head)?;
-    let mut bytes = vec![0; RECORD * BLOCK.min(mesh.triangles().len())];
+    let (mut ready, mut next) = (head, Vec::new());
     for block in mesh.triangles().chunks(BLOCK) {
-        let bytes = &mut bytes[..RECORD * block.len()];
-        bytes
-            .par_chunks_exact_mut(RECORD)
-            .zip(block)
-            .with_min_len(1 << 12)
-            .for_each(|(record, &triangle)| encode(record, mesh.corners_mm(triangle)));
-        file.write_all(bytes)?;
+        let (written, ()) = rayon::join(
+            || file.write_all(&ready),
+            || encode_block(block, mesh, &mut next),
+        );
+        written?;
+        std::mem::swap(&mut ready, &mut next);
         task.advance(block.len())?;
     }
+    file.write_all(&ready)?;
     Ok(())
 }
 
+/// Fills `bytes` with the records of a block.
+fn encode_block(block: &[[u32; 3]], mesh: &TriangleMesh, bytes: &mut Vec<u8>) {
+    bytes.resize(RECORD * block.len(), 0);
+    let (records, _) = bytes.as_chunks_mut::<RECORD>();
+    records
+        .par_iter_mut()
+        .zip(block)
+        .with_min_len(1 << 12)
+        .for_each(|(record, &triangle)| encode(record, mesh.corners_mm(triangle)));
+}
+
 /// Fills one record; the attribute stays 0.
-fn encode(record: &mut [u8], corners_mm: [[f64; 3]; 3]) {
+fn encode(record: &mut [u8; RECORD], corners_mm: [[f64; 3]; 3]) {
     let [a, b, c] = corners_mm;
     let vectors = [unit_normal(corners_mm), a, b, c];
     let (fields, _attribute) = record.as_chunks_mut::<4>();
