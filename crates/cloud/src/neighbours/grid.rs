@@ -74,7 +74,27 @@ impl Grid {
     /// For each point, in the grid's order, the sum of the distances to its `k` nearest, itself
     /// included.
     pub(super) fn distance_sums(&self, k: usize, task: &Task) -> Result<Vec<f64>, Cancelled> {
-        let mut sums = vec![0.0; self.x.len()];
+        self.sums_from(self.x.len(), |index| self.point(index), k, task)
+    }
+
+    /// For each of `centres` the sum of the distances to the `k` nearest points.
+    pub(super) fn distance_sums_from(
+        &self,
+        centres: &[[f64; 3]],
+        k: usize,
+        task: &Task,
+    ) -> Result<Vec<f64>, Cancelled> {
+        self.sums_from(centres.len(), |index| centres[index], k, task)
+    }
+
+    fn sums_from(
+        &self,
+        centres: usize,
+        centre: impl Fn(usize) -> [f64; 3] + Sync,
+        k: usize,
+        task: &Task,
+    ) -> Result<Vec<f64>, Cancelled> {
+        let mut sums = vec![0.0; centres];
         sums.par_chunks_mut(BATCH)
             .enumerate()
             .try_for_each(|(batch, sums)| {
@@ -82,7 +102,7 @@ impl Grid {
                 for (offset, sum) in sums.iter_mut().enumerate() {
                     // A ball may hold very many points where k is large.
                     task.check()?;
-                    *sum = search.distance_sum(batch * BATCH + offset);
+                    *sum = search.distance_sum(centre(batch * BATCH + offset));
                 }
                 task.advance(sums.len())
             })?;
@@ -174,8 +194,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn distance_sum(&mut self, index: usize) -> f64 {
-        let centre = self.grid.point(index);
+    fn distance_sum(&mut self, centre: [f64; 3]) -> f64 {
         let mut radius = self.first_radius(centre);
         loop {
             self.grid.squared_distances(centre, radius, &mut self.found);

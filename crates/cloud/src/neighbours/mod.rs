@@ -1,12 +1,26 @@
 //! How far apart the points of a cloud are.
+//!
+//! A lattice is searched by `lattice`, free points by `grid`, and what is too uneven for cells by
+//! `tree`. Measured on the 592,212 edge pixels of a skull, 100 neighbours, processor time:
+//!
+//! | idea | brought |
+//! |---|---|
+//! | cells of equal size instead of a k-d tree, the ball of one point bounding the next | kept for free points: 4 |
+//! | a lattice's points as bits, distances as classes of steps, whole numbers until the end | kept: 4.4 over cells |
+//! | of that: up to four rows side by side in a word (a loop over bits ends where no processor can foresee it, so fewer loops) | 1.8 |
+//! | of that: beginning with the ball that the row above needed | 1.8 |
+//! | balls of 20 or 80 steps a neighbour instead of 40 | dropped: 0.86 (more points left to cells) and 1.0 |
+//! | beginning one ball larger, so that fewer points need a second look | dropped: 1.05 |
 
 mod grid;
+mod lattice;
 mod tree;
 
-use bonemesh_task::{Task, chunked_sum};
+use bonemesh_task::{Cancelled, Task, chunked_sum};
 
 use crate::{CloudError, PointCloud};
 use grid::Grid;
+use lattice::Packed;
 
 /// Points that one worker handles between two looks at the task; fixed, so that results do not
 /// depend on the number of workers.
@@ -36,12 +50,35 @@ pub fn mean_neighbour_distance(
     }
     let k = k.min(points.len());
     task.begin("neighbours", points.len());
-    let sums = match Grid::new(points, k) {
-        Some(grid) => grid.distance_sums(k, task)?,
-        None => tree::distance_sums(points, k, task)?,
+    let sum_mm = match cloud.lattice().and_then(|lattice| Packed::new(lattice, k)) {
+        Some(packed) => {
+            let sums = packed.sums(task)?;
+            let lonely: Vec<_> = sums.lonely.iter().map(|i| points[*i as usize]).collect();
+            sums.sum_mm + free_sum(points, Some(&lonely), k, task)?
+        }
+        None => free_sum(points, None, k, task)?,
     };
     let neighbours = if include_self { k } else { k - 1 };
-    Ok(chunked_sum(&sums) / neighbours as f64 / points.len() as f64)
+    Ok(sum_mm / neighbours as f64 / points.len() as f64)
+}
+
+/// Sum of the distances (mm) from each of `centres`, or from all `points`, to the `k` nearest of
+/// `points`, wherever these lie.
+fn free_sum(
+    points: &[[f64; 3]],
+    centres: Option<&[[f64; 3]]>,
+    k: usize,
+    task: &Task,
+) -> Result<f64, Cancelled> {
+    if centres.is_some_and(<[_]>::is_empty) {
+        return Ok(0.0);
+    }
+    let sums = match (Grid::new(points, k), centres) {
+        (Some(grid), Some(centres)) => grid.distance_sums_from(centres, k, task)?,
+        (Some(grid), None) => grid.distance_sums(k, task)?,
+        (None, centres) => tree::distance_sums(points, centres.unwrap_or(points), k, task)?,
+    };
+    Ok(chunked_sum(&sums))
 }
 
 #[cfg(test)]
@@ -82,7 +119,10 @@ mod tests {
         }
         let k = k.min(points.len());
         let expected = by_definition(points, k, true) * (k * points.len()) as f64;
-        let tree: f64 = tree::distance_sums(points, k, &task).unwrap().iter().sum();
+        let tree: f64 = tree::distance_sums(points, points, k, &task)
+            .unwrap()
+            .iter()
+            .sum();
         assert!(is_close(tree, expected), "tree {tree} {expected}");
         if let Some(grid) = Grid::new(points, k) {
             let grid: f64 = grid.distance_sums(k, &task).unwrap().iter().sum();
@@ -157,18 +197,23 @@ mod tests {
     fn the_mean_is_the_same_for_any_number_of_threads() {
         let place = |i: u32| f64::from(i.wrapping_mul(2_654_435_761) >> 12) * 1e-4;
         let points = (0..30_000).map(|i| [place(3 * i), place(3 * i + 1), place(3 * i + 2)]);
-        let cloud = PointCloud::from_points(points.collect()).unwrap();
-        let means: Vec<u64> = [1, 2, 5]
-            .into_iter()
-            .map(|threads| {
+        let free = PointCloud::from_points(points.collect()).unwrap();
+        let round = |i: u32| [i % 50, i / 50 % 60, i / 3000].map(|c| c as i32);
+        let coordinates = (0..30_000).filter(|i| i % 3 > 0).map(round).collect();
+        let affine = Affine::from_axes([0.3, 0.0, 0.0], [0.0, 0.3, 0.1], [0.0, 0.0, 0.7], [0.1; 3]);
+        let lattice = PointCloud::from_lattice(Lattice {
+            coordinates,
+            frame_from_lattice: affine,
+        });
+        for cloud in [free, lattice.unwrap()] {
+            let means = [1, 2, 5].map(|threads| {
                 let pool = bonemesh_task::pool(std::num::NonZeroUsize::new(threads)).unwrap();
-                let mean = pool.install(|| {
-                    mean_neighbour_distance(&cloud, 20, true, &Task::default()).unwrap()
-                });
-                mean.to_bits()
-            })
-            .collect();
-        assert!(means.iter().all(|mean| *mean == means[0]));
+                pool.install(|| mean_neighbour_distance(&cloud, 20, true, &Task::default()))
+                    .unwrap()
+                    .to_bits()
+            });
+            assert!(means.iter().all(|mean| *mean == means[0]));
+        }
     }
 
     #[test]

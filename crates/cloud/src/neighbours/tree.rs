@@ -12,9 +12,10 @@ use super::BATCH;
 /// Points in a leaf; the fastest of 32, 64 and 128 on clouds of skulls.
 const LEAF: usize = 64;
 
-/// For each point the sum of the distances to its `k` nearest, itself included.
+/// For each of `centres` the sum of the distances to the `k` nearest of `points`.
 pub(super) fn distance_sums(
     points: &[[f64; 3]],
+    centres: &[[f64; 3]],
     k: usize,
     task: &Task,
 ) -> Result<Vec<f64>, Cancelled> {
@@ -23,7 +24,7 @@ pub(super) fn distance_sums(
     // The immutable tree takes any number of points that share a coordinate, which the mutable
     // one does not, and the points of a slice always do.
     let tree: ImmutableKdTree<f64, u32, 3, LEAF> = ImmutableKdTree::new_from_slice(points);
-    let batches: Vec<Vec<f64>> = points
+    let batches: Vec<Vec<f64>> = centres
         .par_chunks(BATCH)
         .map(|batch| {
             let mut sums = Vec::with_capacity(batch.len());
