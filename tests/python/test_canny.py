@@ -111,6 +111,14 @@ def test_floating_point_images_are_taken_as_they_are():
         assert (edges == edges_of(images, sigma, 50.0, 200.0)).all()
 
 
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, 1e200])
+def test_pixels_that_are_no_usable_number_are_refused(value):
+    image = np.ones((8, 9))
+    image[3, 4] = value
+    with pytest.raises(ValueError, match="row 3, column 4"):
+        bonemesh.canny(image)
+
+
 def test_an_image_is_a_stack_of_one():
     mask = bonemesh.phantom("curved").hu > 350
     assert (bonemesh.canny(mask[0]) == bonemesh.canny(mask)[0]).all()

@@ -23,7 +23,7 @@ enum Images {
 /// Pixel for pixel those of scikit-image's `feature.canny` with its usual borders. `sigma` is in
 /// pixels. `low` and `high` are gradients where the image's full range is 1: True of a boolean
 /// image, the type's largest value of whole numbers; floating-point images are taken as they are,
-/// in double precision.
+/// in double precision, and hold numbers only: NaN and infinities are refused.
 #[pyfunction]
 #[pyo3(signature = (image_or_stack, *, sigma=1.0, low=0.1, high=0.2, threads=None, progress=None, cancel=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments, as Python has them
@@ -81,10 +81,10 @@ fn edges_of_images(
     Zip::from(edges.axis_iter_mut(Axis(0)))
         .and(stack.axis_iter(Axis(0)))
         .into_par_iter()
-        .try_for_each(|(mut edges, image)| {
+        .try_for_each(|(mut edges, image)| -> Result<(), Error> {
             task.check()?;
-            edges.assign(&bonemesh_segment::canny(image, settings));
-            task.advance(1)
+            edges.assign(&bonemesh_segment::canny(image, settings)?);
+            Ok(task.advance(1)?)
         })?;
     Ok(edges)
 }

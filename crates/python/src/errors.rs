@@ -155,6 +155,7 @@ fn is_argument(error: &Error) -> bool {
             e,
             SegmentError::Threshold(_)
                 | SegmentError::Sigma(_)
+                | SegmentError::Pixel { .. }
                 | SegmentError::CannyThresholds { .. }
         ),
         Error::Cloud(e) => matches!(e, CloudError::NeighbourCount(_)),

@@ -87,6 +87,18 @@ pub enum SegmentError {
         /// Gradient from which a pixel starts an edge.
         high: f64,
     },
+    /// A grey pixel that has no gradient.
+    #[error(
+        "the pixel at row {row}, column {column} is {value}; give numbers from -1e150 to 1e150, and a number in place of missing values"
+    )]
+    Pixel {
+        /// Its row, counted from 0.
+        row: usize,
+        /// Its column, counted from 0.
+        column: usize,
+        /// Its value.
+        value: f64,
+    },
     /// Mask and geometry disagree.
     #[error(
         "the mask has {array:?} (slices, rows, columns) voxels but its geometry says {geometry:?}; make both from the same volume"

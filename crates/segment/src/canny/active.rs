@@ -6,7 +6,6 @@
 //! one operation, and empty ones cost nothing.
 
 use super::plane::Extent;
-
 /// Column ranges `start..end` of each row, ascending and apart.
 #[derive(Default)]
 pub(super) struct Spans {
@@ -201,14 +200,15 @@ fn mark_right(row: &[u64], columns: usize, marks: &mut [u64]) {
 fn pack(pixels: &[bool], words: &mut [u64]) {
     for (word, pixels) in words.iter_mut().zip(pixels.chunks(64)) {
         *word = 0;
-        for (index, eight) in pixels.chunks(8).enumerate() {
-            let mut bytes = [0_u8; 8];
-            for (byte, pixel) in bytes.iter_mut().zip(eight) {
-                *byte = u8::from(*pixel);
-            }
+        let (whole, rest) = pixels.as_chunks::<8>();
+        for (index, eight) in whole.iter().enumerate() {
             // Byte k holds 0 or 1 at bit 8k; the product gathers these at bits 56 + k.
-            let bits = u64::from_le_bytes(bytes).wrapping_mul(0x0102_0408_1020_4080) >> 56;
+            let bytes = u64::from_le_bytes(eight.map(u8::from));
+            let bits = bytes.wrapping_mul(0x0102_0408_1020_4080) >> 56;
             *word |= bits << (8 * index);
+        }
+        for (index, pixel) in rest.iter().enumerate() {
+            *word |= u64::from(*pixel) << (8 * whole.len() + index);
         }
     }
 }

@@ -1,11 +1,7 @@
 //! Step 4: of the pixels that stayed, the connected pieces that are strong somewhere.
 
-/// What is known about a pixel while pieces are followed.
-const NONE: u8 = 0;
-const WAITING: u8 = 1;
-
 /// A pixel that stayed after suppression.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(super) struct Candidate {
     /// Index of the pixel in its slice; never in the outermost ring.
     pub(super) pixel: u32,
@@ -14,9 +10,10 @@ pub(super) struct Candidate {
 }
 
 /// Follows the 8-connected pieces of one slice at a time.
-#[derive(Default)]
 pub(super) struct Hysteresis {
-    state: Vec<u8>,
+    /// Whether a pixel is weak and not known to be an edge.
+    waits: Vec<bool>,
+    weak: Vec<u32>,
     open: Vec<u32>,
 }
 
@@ -24,45 +21,55 @@ impl Hysteresis {
     /// For slices of `pixels` pixels.
     pub(super) fn new(pixels: usize) -> Self {
         Self {
-            state: vec![NONE; pixels],
+            waits: vec![false; pixels],
+            weak: Vec::new(),
             open: Vec::new(),
         }
     }
 
     /// Sets in `edges` every candidate that is connected to a strong one.
+    ///
+    /// Most candidates are strong, so the weak ones look for them and not the other way round.
     pub(super) fn connect(&mut self, candidates: &[Candidate], columns: usize, edges: &mut [bool]) {
+        self.weak.clear();
         for candidate in candidates {
-            self.state[candidate.pixel as usize] = WAITING;
-        }
-        for candidate in candidates.iter().filter(|c| c.is_strong) {
-            self.follow(candidate.pixel, columns as u32, edges);
-        }
-        for candidate in candidates {
-            self.state[candidate.pixel as usize] = NONE;
-        }
-    }
-
-    /// Takes the whole piece around `start` that is still waiting.
-    fn follow(&mut self, start: u32, columns: u32, edges: &mut [bool]) {
-        self.take(start, edges);
-        while let Some(pixel) = self.open.pop() {
-            // Candidates keep off the outermost ring, so all eight neighbours exist.
-            for row in [pixel - columns, pixel, pixel + columns] {
-                for neighbour in row - 1..=row + 1 {
-                    self.take(neighbour, edges);
-                }
+            if candidate.is_strong {
+                edges[candidate.pixel as usize] = true;
+            } else {
+                self.waits[candidate.pixel as usize] = true;
+                self.weak.push(candidate.pixel);
             }
         }
-    }
-
-    fn take(&mut self, pixel: u32, edges: &mut [bool]) {
-        let state = &mut self.state[pixel as usize];
-        if *state == WAITING {
-            *state = NONE;
-            edges[pixel as usize] = true;
-            self.open.push(pixel);
+        for at in 0..self.weak.len() {
+            let pixel = self.weak[at];
+            let touches_edge = neighbours(pixel, columns).any(|n| edges[n as usize]);
+            if self.waits[pixel as usize] && touches_edge {
+                self.follow(pixel, columns, edges);
+            }
+        }
+        for pixel in &self.weak {
+            self.waits[*pixel as usize] = false;
         }
     }
+
+    /// Takes the weak pixels around `start` that are still waiting.
+    fn follow(&mut self, start: u32, columns: usize, edges: &mut [bool]) {
+        self.open.push(start);
+        while let Some(pixel) = self.open.pop() {
+            self.waits[pixel as usize] = false;
+            edges[pixel as usize] = true;
+            let waiting = neighbours(pixel, columns).filter(|n| self.waits[*n as usize]);
+            self.open.extend(waiting);
+        }
+    }
+}
+
+/// A pixel with its eight neighbours; candidates keep off the outermost ring, so all exist.
+fn neighbours(pixel: u32, columns: usize) -> impl Iterator<Item = u32> {
+    let columns = columns as u32;
+    [pixel - columns, pixel, pixel + columns]
+        .into_iter()
+        .flat_map(|row| row - 1..=row + 1)
 }
 
 #[cfg(test)]

@@ -11,6 +11,17 @@
 //! An edge between two equal pixels is decided by the last bit of a magnitude, and a straight
 //! bone border is full of such ties. So all arithmetic is f64 in the order in which `SciPy` does
 //! it, sums included. Single precision moves one pixel in a hundred.
+//!
+//! What was tried to be faster where work was near transitions only already, and how much faster
+//! it made the edges of 140 slices of 512 x 512 of a skull (sigma 1, processor time):
+//!
+//! | idea | brought |
+//! |---|---|
+//! | row by row, four rows of each plane in the nearest cache; Sobel on plain slices, which the compiler does two pixels at a time; candidates appended without branches; weak pixels that look for strong ones | kept: 1.7 together |
+//! | sums over rows looked up: nine pixels of a binary column have 512 | kept: 1.34 |
+//! | the nine terms over columns in one expression | kept: 1.08, for one small function |
+//! | a bound on the Gaussian's tail to look three pixels around a transition instead of five | dropped: 1.07, for a proof that every reader would have to follow |
+//! | single precision | dropped: other edges |
 
 mod active;
 mod hysteresis;
@@ -91,17 +102,31 @@ impl Default for CannySettings {
     }
 }
 
+/// Largest pixel of a grey image; the squares of the gradients of larger ones overflow.
+const MAX_PIXEL: f64 = 1e150;
+
 /// Canny edges of a grey image `[row, column]`; thresholds are in the image's unit.
+///
+/// # Errors
+/// [`SegmentError::Pixel`] when a pixel is no number or its magnitude is above 1e150.
 #[expect(
     clippy::needless_pass_by_value,
     reason = "views are handed over by value throughout ndarray"
 )]
-pub fn canny(image: ArrayView2<'_, f64>, settings: CannySettings) -> Array2<bool> {
+pub fn canny(
+    image: ArrayView2<'_, f64>,
+    settings: CannySettings,
+) -> Result<Array2<bool>, SegmentError> {
+    let is_unusable = |pixel: f64| pixel.is_nan() || pixel.abs() > MAX_PIXEL;
+    if let Some(((row, column), value)) = image.indexed_iter().find(|(_, v)| is_unusable(**v)) {
+        let value = *value;
+        return Err(SegmentError::Pixel { row, column, value });
+    }
     let mut edges = Array2::from_elem(image.raw_dim(), false);
     let (rows, columns) = image.dim();
     let extent = Extent { rows, columns };
     if extent.pixels() == 0 {
-        return edges;
+        return Ok(edges);
     }
     let smoothing = Smoothing::new(settings.sigma, extent);
     let mut scratch = Scratch::new(extent);
@@ -117,7 +142,7 @@ pub fn canny(image: ArrayView2<'_, f64>, settings: CannySettings) -> Array2<bool
     for (edge, found) in edges.iter_mut().zip(found) {
         *edge = found;
     }
-    edges
+    Ok(edges)
 }
 
 /// Canny edges of each slice of a mask, slices in parallel.

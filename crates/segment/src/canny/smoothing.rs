@@ -1,8 +1,17 @@
 //! Step 1: the Gaussian, corrected for the image's border.
+//!
+//! Over rows a binary image has few sums: the nine pixels above each other that a Gaussian of
+//! sigma 1 weighs can be black or white in 512 ways. Their sums are looked up.
 
 use super::active::Spans;
 use super::kernel::gaussian_weights;
 use super::plane::{Extent, Pixel};
+
+/// The largest radius for which sums over rows are looked up.
+const TABLE_RADIUS: usize = 4;
+
+/// Ways in which so many pixels can be black or white.
+const TABLE_SIZE: usize = 1 << (2 * TABLE_RADIUS + 1);
 
 /// The Gaussian of one sigma for images of one size.
 pub(super) struct Smoothing {
@@ -12,6 +21,25 @@ pub(super) struct Smoothing {
     /// Gaussian of an image of ones plus epsilon, one row for each class of rows: rows that
     /// reach equally far beyond the image share one.
     border: Vec<f64>,
+    /// The weighted sum of a column of pixels whose values are the bits of the index.
+    table: Option<Box<[f64; TABLE_SIZE]>>,
+}
+
+/// Scratch memory of one worker.
+pub(super) struct Lines {
+    /// Sums over rows.
+    line: Vec<f64>,
+    /// For each column the pixels that the Gaussian weighs, from the lowest bit down the image.
+    codes: Vec<u16>,
+}
+
+impl Lines {
+    pub(super) fn new(extent: Extent) -> Self {
+        Self {
+            line: Vec::new(),
+            codes: vec![0; extent.columns],
+        }
+    }
 }
 
 impl Smoothing {
@@ -21,13 +49,33 @@ impl Smoothing {
             extent,
             weights,
             border: Vec::new(),
+            table: None,
         };
         let classes = extent.rows.min(2 * smoothing.radius() + 1);
         smoothing.border = Vec::with_capacity(classes * extent.columns);
         for class in 0..classes {
             smoothing.push_border(class, classes);
         }
+        smoothing.fill_table();
         smoothing
+    }
+
+    /// Fills the table, in the order in which `weigh_rows` adds.
+    fn fill_table(&mut self) {
+        let radius = self.radius();
+        if radius > TABLE_RADIUS {
+            return;
+        }
+        let mut table = Box::new([0.0; TABLE_SIZE]);
+        for (code, sum) in table.iter_mut().enumerate() {
+            let bit = |at: usize| (code >> at & 1) as f64;
+            *sum = bit(radius) * self.weights[0];
+            for distance in (1..=radius).rev() {
+                let pair = bit(radius - distance) + bit(radius + distance);
+                *sum += pair * self.weights[distance];
+            }
+        }
+        self.table = Some(table);
     }
 
     /// Reach of the Gaussian in pixels.
@@ -69,27 +117,76 @@ impl Smoothing {
         &self.border[class * columns..][..columns]
     }
 
-    /// Writes the smoothed image at `spans`; `line` is scratch.
-    pub(super) fn smooth<P: Pixel>(
+    /// Gets `lines` ready for the first row of `image`.
+    pub(super) fn begin<P: Pixel>(&self, image: &[P], lines: &mut Lines) {
+        lines.codes.fill(0);
+        for row in 0..self.radius() {
+            self.enter_row(image, row, lines);
+        }
+    }
+
+    /// Pushes a row of pixels, black beyond the image, into the codes of a binary image.
+    fn enter_row<P: Pixel>(&self, image: &[P], row: usize, lines: &mut Lines) {
+        if !P::IS_BINARY || self.table.is_none() {
+            return;
+        }
+        let (columns, top) = (self.extent.columns, 2 * self.radius());
+        if row >= self.extent.rows {
+            lines.codes.iter_mut().for_each(|code| *code >>= 1);
+            return;
+        }
+        let pixels = &image[row * columns..(row + 1) * columns];
+        for (code, pixel) in lines.codes.iter_mut().zip(pixels) {
+            *code = *code >> 1 | pixel.bit() << top;
+        }
+    }
+
+    /// Writes the smoothed pixels of a row at `spans`; rows come one after the other.
+    pub(super) fn smooth_row<P: Pixel>(
         &self,
         image: &[P],
+        row: usize,
         spans: &Spans,
+        lines: &mut Lines,
         smoothed: &mut [f64],
-        line: &mut Vec<f64>,
     ) {
-        let columns = self.extent.columns;
-        for row in 0..self.extent.rows {
-            let border = self.border_of(row);
-            for &(start, end) in spans.of_row(row) {
-                let (start, end) = (start as usize, end as usize);
-                self.weigh_rows(image, row, start, end, line);
-                let out = &mut smoothed[row * columns + start..row * columns + end];
-                self.weigh_columns(line, out);
-                for (value, ones) in out.iter_mut().zip(&border[start..end]) {
-                    *value /= ones;
-                }
+        self.enter_row(image, row + self.radius(), lines);
+        let border = self.border_of(row);
+        for &(start, end) in spans.of_row(row) {
+            let (start, end) = (start as usize, end as usize);
+            let Lines { line, codes } = lines;
+            match &self.table {
+                Some(table) if P::IS_BINARY => self.look_up_rows(table, codes, start, end, line),
+                _ => self.weigh_rows(image, row, start, end, line),
+            }
+            let (out, ones) = (&mut smoothed[start..end], &border[start..end]);
+            match self.weights.first_chunk::<5>() {
+                // The default sigma: with its number of terms known, they stay in registers.
+                Some(weights) if self.radius() == 4 => weigh_nine_columns(weights, line, ones, out),
+                _ => self.weigh_columns(line, ones, out),
             }
         }
+    }
+
+    /// What `weigh_rows` does, for a binary image.
+    fn look_up_rows(
+        &self,
+        table: &[f64; TABLE_SIZE],
+        codes: &[u16],
+        start: usize,
+        end: usize,
+        line: &mut Vec<f64>,
+    ) {
+        let radius = self.radius();
+        let (first, last) = (
+            start.saturating_sub(radius),
+            (end + radius).min(codes.len()),
+        );
+        line.clear();
+        line.resize(first + radius - start, 0.0);
+        let sums = codes[first..last].iter();
+        line.extend(sums.map(|code| table[*code as usize % TABLE_SIZE]));
+        line.resize(end - start + 2 * radius, 0.0);
     }
 
     /// Fills `line` with the Gaussian over rows for the columns from `start - radius` up to
@@ -136,8 +233,9 @@ impl Smoothing {
         }
     }
 
-    /// The Gaussian over columns of `line`, which reaches `radius` beyond `out` on both sides.
-    fn weigh_columns(&self, line: &[f64], out: &mut [f64]) {
+    /// The Gaussian over columns of `line`, which reaches `radius` beyond `out` on both sides,
+    /// divided by that of `ones`.
+    fn weigh_columns(&self, line: &[f64], ones: &[f64], out: &mut [f64]) {
         let radius = self.radius();
         let n = out.len();
         for (sum, centre) in out.iter_mut().zip(&line[radius..]) {
@@ -151,5 +249,23 @@ impl Smoothing {
                 *sum += (before + after) * weight;
             }
         }
+        for (value, ones) in out.iter_mut().zip(ones) {
+            *value /= ones;
+        }
+    }
+}
+
+/// `weigh_columns` for a radius of 4.
+fn weigh_nine_columns(weights: &[f64; 5], line: &[f64], ones: &[f64], out: &mut [f64]) {
+    let n = out.len();
+    let [a, b, c, d, centre, e, f, g, h] = std::array::from_fn(|shift| &line[shift..][..n]);
+    let ones = &ones[..n];
+    for i in 0..n {
+        let mut sum = centre[i] * weights[0];
+        sum += (a[i] + h[i]) * weights[4];
+        sum += (b[i] + g[i]) * weights[3];
+        sum += (c[i] + f[i]) * weights[2];
+        sum += (d[i] + e[i]) * weights[1];
+        out[i] = sum / ones[i];
     }
 }
