@@ -267,6 +267,11 @@ fn unusable_arguments_end_with_2() {
         let output = bonemesh(&[&roi[..], &[option.as_str()]].concat());
         assert_eq!(output.status.code(), Some(2), "{thickness}");
     }
+    for command in ["cloud", "render"] {
+        let output = bonemesh(&[command, "x", "-o", "out.doc"]);
+        assert_eq!(output.status.code(), Some(2), "{command}");
+        assert!(message(&output).contains("out.doc"), "{command}");
+    }
     assert_eq!(
         bonemesh(&["phantom", "unicorn", "x"]).status.code(),
         Some(2)

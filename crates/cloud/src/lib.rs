@@ -47,7 +47,7 @@ use std::path::PathBuf;
 use bonemesh_task::Cancelled;
 
 pub use extract::extract_points;
-pub use io::{read_cloud, write_cloud};
+pub use io::{CloudFormat, check_target, read_cloud, write_cloud};
 pub use neighbours::mean_neighbour_distance;
 pub use point_cloud::{Frame, Lattice, PointCloud};
 pub use sampling::{Percent, Sampler, sample};

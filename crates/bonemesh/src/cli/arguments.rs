@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use bonemesh_cloud::{Frame, Percent, Sampler};
+use bonemesh_cloud::{CloudFormat, Frame, Percent, Sampler};
 use bonemesh_dicom::SeriesChoice;
 use bonemesh_mesh::{MeshFormat, TriangleMesh};
 use bonemesh_phantom::{ORIENTATIONS, Orientation, Phantom, PhantomError, ScanSettings};
@@ -125,7 +125,7 @@ pub(super) struct CloudArguments {
     /// Folder of CT files (sub-folders are searched too), or one NIfTI, NRRD or multi-frame file.
     pub(super) directory: PathBuf,
     /// Cloud file to write (.npy, .ply, .xyz).
-    #[arg(short, long)]
+    #[arg(short, long, value_parser = cloud_file())]
     pub(super) output: PathBuf,
     /// Frame of the coordinates.
     #[arg(long, value_enum, default_value = "patient")]
@@ -342,6 +342,11 @@ impl SurfaceArguments {
 /// A path, Unicode or not, whose ending names a mesh format.
 fn mesh_file() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|path| MeshFormat::of(&path).map(|_| path))
+}
+
+/// A path, Unicode or not, whose ending names a cloud format.
+fn cloud_file() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| CloudFormat::of(&path).map(|_| path))
 }
 
 fn hu(text: &str) -> Result<HuThreshold, String> {

@@ -73,6 +73,7 @@ fn save(rendered: Rendered, file: &Path, task: &Task) -> Result<Answer, Error> {
 }
 
 fn run_cloud(arguments: &CloudArguments, task: &Task) -> Result<Answer, Error> {
+    bonemesh_cloud::check_target(&arguments.output)?;
     let settings = arguments.edges.settings(None);
     let workers = pool(settings.threads)?;
     let Reading { volume, series } = workers.install(|| {

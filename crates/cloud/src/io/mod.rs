@@ -9,18 +9,28 @@ use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use tempfile::NamedTempFile;
+
 use crate::{CloudError, PointCloud};
 
 /// A file format for clouds.
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
+pub enum CloudFormat {
+    /// `NumPy`'s array file.
     Npy,
+    /// Polygon file format, of which the vertices count.
     Ply,
+    /// Text, three numbers a line.
     Xyz,
 }
 
-impl Format {
-    fn of(path: &Path) -> Result<Self, CloudError> {
+impl CloudFormat {
+    /// The format that the extension of `path` names, in capitals or not.
+    ///
+    /// # Errors
+    /// [`CloudError::Extension`].
+    pub fn of(path: &Path) -> Result<Self, CloudError> {
         let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
         match extension.as_deref() {
             Some("npy") => Ok(Self::Npy),
@@ -33,6 +43,21 @@ impl Format {
     }
 }
 
+/// Tells now whether [`write_cloud`] could write `path`, so that long work is not lost at its end.
+///
+/// Makes a temporary file in the folder and takes it away again.
+///
+/// # Errors
+/// Those of [`write_cloud`].
+pub fn check_target(path: &Path) -> Result<(), CloudError> {
+    CloudFormat::of(path)?;
+    let temporary = destination(path).and_then(|target| create_beside(&target));
+    temporary.map(drop).map_err(|source| CloudError::Write {
+        path: path.to_owned(),
+        source,
+    })
+}
+
 /// Reads a cloud of free points (mm); the file's ending names the format.
 ///
 /// `.npy`: an array of N rows and 3 columns, floating point or whole numbers. `.ply`: the
@@ -43,15 +68,15 @@ impl Format {
 /// [`CloudError::Extension`], [`CloudError::Read`], [`CloudError::Format`],
 /// [`CloudError::NotFinite`] and [`CloudError::TooMany`].
 pub fn read_cloud(path: &Path) -> Result<PointCloud, CloudError> {
-    let format = Format::of(path)?;
+    let format = CloudFormat::of(path)?;
     let bytes = fs::read(path).map_err(|source| CloudError::Read {
         path: path.to_owned(),
         source,
     })?;
     let points = match format {
-        Format::Npy => npy::parse(&bytes),
-        Format::Ply => ply::parse(&bytes),
-        Format::Xyz => xyz::parse(&bytes),
+        CloudFormat::Npy => npy::parse(&bytes),
+        CloudFormat::Ply => ply::parse(&bytes),
+        CloudFormat::Xyz => xyz::parse(&bytes),
     };
     PointCloud::from_points(points.map_err(|reason| CloudError::Format {
         path: path.to_owned(),
@@ -68,12 +93,12 @@ pub fn read_cloud(path: &Path) -> Result<PointCloud, CloudError> {
 /// # Errors
 /// [`CloudError::Extension`] and [`CloudError::Write`].
 pub fn write_cloud(cloud: &PointCloud, path: &Path) -> Result<(), CloudError> {
-    let format = Format::of(path)?;
+    let format = CloudFormat::of(path)?;
     let points = cloud.points_mm();
     write_whole(path, |out| match format {
-        Format::Npy => npy::write(points, out),
-        Format::Ply => ply::write(points, out),
-        Format::Xyz => xyz::write(points, out),
+        CloudFormat::Npy => npy::write(points, out),
+        CloudFormat::Ply => ply::write(points, out),
+        CloudFormat::Xyz => xyz::write(points, out),
     })
     .map_err(|source| CloudError::Write {
         path: path.to_owned(),
@@ -87,7 +112,16 @@ fn write_whole(
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
     let path = &destination(path)?;
-    let folder = match path.parent() {
+    let mut out = BufWriter::new(create_beside(path)?);
+    write(&mut out)?;
+    let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
+    file.persist(path)?;
+    Ok(())
+}
+
+/// A temporary file in the folder of `target`.
+fn create_beside(target: &Path) -> io::Result<NamedTempFile> {
+    let folder = match target.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
@@ -99,11 +133,7 @@ fn write_whole(
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let mut out = BufWriter::new(builder.tempfile_in(folder)?);
-    write(&mut out)?;
-    let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
-    file.persist(path)?;
-    Ok(())
+    builder.tempfile_in(folder)
 }
 
 /// Where the file goes, links followed; a rename would replace links, devices, pipes and
@@ -200,14 +230,21 @@ mod tests {
         let points = cloud(&[[0.0; 3]]);
         for name in ["cloud", "cloud.stl", ".npy"] {
             let path = Path::new("no-such-folder").join(name);
-            let error = write_cloud(&points, &path).unwrap_err();
-            assert!(matches!(error, CloudError::Extension { .. }), "{name}");
+            for result in [write_cloud(&points, &path), check_target(&path)] {
+                let error = result.unwrap_err();
+                assert!(matches!(error, CloudError::Extension { .. }), "{name}");
+            }
         }
         let path = Path::new("no-such-folder/cloud.npy");
         let message = read_cloud(path).unwrap_err().to_string();
         assert!(message.contains("no-such-folder") && message.contains("check"));
-        let message = write_cloud(&points, path).unwrap_err().to_string();
-        assert!(message.contains("no-such-folder") && message.contains("check"));
+        for result in [write_cloud(&points, path), check_target(path)] {
+            let message = result.unwrap_err().to_string();
+            assert!(message.contains("no-such-folder") && message.contains("check"));
+        }
+        let folder = tempfile::tempdir().unwrap();
+        check_target(&folder.path().join("CLOUD.NPY")).unwrap();
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 
     #[test]
