@@ -7,7 +7,7 @@ use std::time::Instant;
 use bonemesh_cloud::{Frame, PointCloud, extract_points, mean_neighbour_distance, sample};
 use bonemesh_mesh::TriangleMesh;
 use bonemesh_segment::{detect_edges, threshold};
-use bonemesh_surface::{alpha_tetrahedra, boundary_surface};
+use bonemesh_surface::{alpha_boundary, boundary_surface};
 use bonemesh_task::{Task, pool};
 use bonemesh_volume::Volume;
 
@@ -148,9 +148,9 @@ fn cloud_to_mesh(
         return Err(Error::NoAlpha);
     }
     seconds.neighbours = lap(&mut clock);
-    let cells = alpha_tetrahedra(cloud, alpha_mm, task)?;
+    let boundary = alpha_boundary(cloud, alpha_mm, task)?;
     seconds.tetrahedra = lap(&mut clock);
-    let surface = boundary_surface(cloud, &cells, task)?;
+    let surface = boundary_surface(cloud, boundary, task)?;
     drop(cells);
     let topology = check(&surface.mesh, task)?;
     seconds.surface = lap(&mut clock);

@@ -3,11 +3,24 @@
 use bonemesh_task::Task;
 use rayon::prelude::*;
 
+use crate::boundary::single_facets_sorted;
+use crate::kept::{Kept, canonical};
 use crate::points::{AnySites, Points, Sites};
-use crate::predicates::{Circumsphere, Kernel, Site};
-use crate::slabs::{Slabs, in_slabs};
+use crate::predicates::Kernel;
+use crate::slabs::Slabs;
 use crate::triangulation::Triangulation;
-use crate::{DelaunayError, Tetrahedra};
+use crate::{AlphaBoundary, DelaunayError, Tetrahedra};
+
+/// Calls a function of the sites, whatever their kind.
+macro_rules! for_any_sites {
+    ($points:expr, $sites:ident => $call:expr) => {
+        match AnySites::new($points)? {
+            AnySites::Upright($sites) => $call,
+            AnySites::Tilted($sites) => $call,
+            AnySites::Free($sites) => $call,
+        }
+    };
+}
 
 /// The Delaunay tetrahedra of `points`.
 ///
@@ -20,17 +33,16 @@ use crate::{DelaunayError, Tetrahedra};
 pub fn tetrahedralize(points: Points<'_>, task: &Task) -> Result<Tetrahedra, DelaunayError> {
     fn all<K: Kernel>(sites: &Sites<K>, task: &Task) -> Result<Tetrahedra, DelaunayError> {
         task.begin("tetrahedra", sites.sorted.len());
-        let cells = match Triangulation::build(&sites.kernel, &sites.sorted, task)? {
-            Some(t) => t.finite_cells().map(|c| canonical(c).0).collect(),
+        let cells = match Triangulation::build(sites, &sites.sorted, task)? {
+            Some(t) => t
+                .finite_cells()
+                .map(|cell| canonical(t.cell_sites(cell)).0)
+                .collect(),
             None => Vec::new(),
         };
         Ok(numbered(cells, sites))
     }
-    match AnySites::new(points)? {
-        AnySites::Upright(sites) => all(&sites, task),
-        AnySites::Tilted(sites) => all(&sites, task),
-        AnySites::Free(sites) => all(&sites, task),
-    }
+    for_any_sites!(points, sites => all(&sites, task))
 }
 
 /// The Delaunay tetrahedra of `points` with a circumradius of at most `alpha` (mm).
@@ -52,50 +64,68 @@ pub fn alpha_complex(
         task: &Task,
     ) -> Result<Tetrahedra, DelaunayError> {
         let slabs = Slabs::plan(sites, alpha);
-        Ok(numbered(in_slabs(sites, alpha, &slabs, task)?, sites))
+        let cells = slabs.triangulate(sites, task, |slab, found| {
+            let kept = Kept::new(found, alpha, &slabs, slab);
+            task.check()?;
+            Ok(kept.ranks())
+        })?;
+        Ok(numbered(cells.concat(), sites))
     }
-    if alpha.is_nan() || alpha <= 0.0 {
-        return Err(DelaunayError::Alpha(alpha));
-    }
+    checked(alpha)?;
     if alpha == f64::INFINITY {
         return tetrahedralize(points, task);
     }
-    match AnySites::new(points)? {
-        AnySites::Upright(sites) => small(&sites, alpha, task),
-        AnySites::Tilted(sites) => small(&sites, alpha, task),
-        AnySites::Free(sites) => small(&sites, alpha, task),
-    }
+    for_any_sites!(points, sites => small(&sites, alpha, task))
 }
 
-/// A positively oriented cell as ranks: ascending, the last two swapped if orientation asks for
-/// it; and its sites, ascending.
-pub(crate) fn canonical<S: Copy>(mut cell: [Site<S>; 4]) -> ([u32; 4], [Site<S>; 4]) {
-    let mut even = true;
-    for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
-        if cell[i].rank > cell[j].rank {
-            cell.swap(i, j);
-            even = !even;
-        }
-    }
-    let mut ranks = cell.map(|s| s.rank);
-    if !even {
-        ranks.swap(2, 3);
-    }
-    (ranks, cell)
-}
-
-/// The circumsphere of a cell whose sites ascend, if its radius is at most `alpha`.
+/// The boundary of [`alpha_complex`], without the time and memory that a list of its tetrahedra
+/// takes.
 ///
-/// One order of the sites means one rounding: whoever asks gets the same answer to the bit.
-pub(crate) fn small_sphere<K: Kernel>(
-    kernel: &K,
-    cell: &[Site<K::Scalar>; 4],
+/// The same triangles as [`Tetrahedra::boundary`] of that complex, in the same order. The stage
+/// is `tetrahedra`.
+///
+/// # Errors
+/// Every [`DelaunayError`]; no tetrahedron small enough is no error but an empty result.
+pub fn alpha_boundary(
+    points: Points<'_>,
     alpha: f64,
-) -> Option<Circumsphere> {
-    let [a, b, c, d] = cell;
-    kernel
-        .circumsphere([&a.at, &b.at, &c.at, &d.at])
-        .filter(|sphere| sphere.radius_squared.sqrt() <= alpha)
+    task: &Task,
+) -> Result<AlphaBoundary, DelaunayError> {
+    fn small<K: Kernel>(
+        sites: &Sites<K>,
+        alpha: f64,
+        task: &Task,
+    ) -> Result<AlphaBoundary, DelaunayError> {
+        let slabs = Slabs::plan(sites, alpha);
+        let found = slabs.triangulate(sites, task, |slab, found| {
+            let kept = Kept::new(found, alpha, &slabs, slab);
+            task.check()?;
+            Ok((kept.count(), kept.facets(&slabs, slab)))
+        })?;
+        let facets = found.par_iter().flat_map_iter(|(_, facets)| facets);
+        let named = facets.map(|facet| facet.map(|rank| sites.input[rank as usize]));
+        let triangles = single_facets_sorted(named, task)?;
+        Ok(AlphaBoundary {
+            triangles,
+            tetrahedra: found.iter().map(|(count, _)| count).sum(),
+        })
+    }
+    checked(alpha)?;
+    if alpha == f64::INFINITY {
+        let all = tetrahedralize(points, task)?;
+        return Ok(AlphaBoundary {
+            triangles: all.boundary(task)?,
+            tetrahedra: all.cells.len(),
+        });
+    }
+    for_any_sites!(points, sites => small(&sites, alpha, task))
+}
+
+fn checked(alpha: f64) -> Result<(), DelaunayError> {
+    if alpha.is_nan() || alpha <= 0.0 {
+        return Err(DelaunayError::Alpha(alpha));
+    }
+    Ok(())
 }
 
 /// Sorts cells of ranks and names the input's points.

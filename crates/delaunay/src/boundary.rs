@@ -3,7 +3,8 @@
 use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;
 
-use crate::{Points, Tetrahedra};
+use crate::kept::outward;
+use crate::{AlphaBoundary, Points, Tetrahedra};
 
 /// Facets sorted by one thread at a time.
 const FACETS_PER_CHUNK: usize = 1 << 14;
@@ -40,18 +41,36 @@ impl Tetrahedra {
 
     /// The cells' total volume in mm^3: exact on a lattice but for one last rounding.
     pub fn volume_mm3(&self, points: Points<'_>) -> f64 {
-        match points {
-            Points::Lattice { coordinates, gram } => {
-                let at = |v: u32| coordinates[v as usize].map(i128::from);
-                let six: i128 = self.cells.par_iter().map(|c| determinant(c.map(at))).sum();
-                let rows = [[0.0; 3], gram[0], gram[1], gram[2]];
-                six as f64 * determinant(rows).sqrt() / 6.0
-            }
-            Points::Free(free) => {
-                let at = |v: u32| free[v as usize];
-                let six = self.cells.par_iter().map(|c| determinant(c.map(at)));
-                bonemesh_task::chunked_sum(&six.collect::<Vec<f64>>()) / 6.0
-            }
+        volume_mm3(self.cells.par_iter().copied(), points)
+    }
+}
+
+impl AlphaBoundary {
+    /// The volume in mm^3 that the triangles enclose, which is that of the tetrahedra: exact on
+    /// a lattice but for one last rounding.
+    pub fn volume_mm3(&self, points: Points<'_>) -> f64 {
+        // The cones from one of the points to all triangles.
+        let Some(&[apex, ..]) = self.triangles.first() else {
+            return 0.0;
+        };
+        let cones = self.triangles.par_iter().map(|&[a, b, c]| [apex, a, b, c]);
+        volume_mm3(cones, points)
+    }
+}
+
+/// The total signed volume of `cells`.
+fn volume_mm3(cells: impl IndexedParallelIterator<Item = [u32; 4]>, points: Points<'_>) -> f64 {
+    match points {
+        Points::Lattice { coordinates, gram } => {
+            let at = |v: u32| coordinates[v as usize].map(i128::from);
+            let six: i128 = cells.map(|c| determinant(c.map(at))).sum();
+            let rows = [[0.0; 3], gram[0], gram[1], gram[2]];
+            six as f64 * determinant(rows).sqrt() / 6.0
+        }
+        Points::Free(free) => {
+            let at = |v: u32| free[v as usize];
+            let six = cells.map(|c| determinant(c.map(at)));
+            bonemesh_task::chunked_sum(&six.collect::<Vec<f64>>()) / 6.0
         }
     }
 }
@@ -65,12 +84,6 @@ where
     u[0] * (v[1] * w[2] - v[2] * w[1])
         + u[1] * (v[2] * w[0] - v[0] * w[2])
         + u[2] * (v[0] * w[1] - v[1] * w[0])
-}
-
-/// The facets of a positive cell, outward.
-#[inline]
-fn facets([a, b, c, d]: [u32; 4]) -> [[u32; 3]; 4] {
-    [[b, c, d], [a, d, c], [a, b, d], [a, c, b]]
 }
 
 /// A facet's smallest vertex, and its others as a key: in ascending order, the last bit telling
@@ -89,6 +102,32 @@ fn key([a, b, c]: [u32; 3]) -> (u32, u64) {
     (first, key)
 }
 
+/// A facet of [`key`].
+#[inline]
+fn facet(first: u32, key: u64) -> [u32; 3] {
+    let (low, high) = ((key >> 32) as u32, (key as u32) >> 1);
+    if key & 1 == 0 {
+        [first, low, high]
+    } else {
+        [first, high, low]
+    }
+}
+
+/// Facets that occur once, in the order of [`Tetrahedra::boundary`]: for a list of which nearly
+/// all do.
+pub(crate) fn single_facets_sorted(
+    facets: impl ParallelIterator<Item = [u32; 3]>,
+    task: &Task,
+) -> Result<Vec<[u32; 3]>, Cancelled> {
+    let mut keys: Vec<(u32, u64)> = facets.map(key).collect();
+    task.check()?;
+    keys.par_sort_unstable_by_key(|&(first, key)| u128::from(first) << 64 | u128::from(key));
+    task.check()?;
+    let same = keys.chunk_by(|(a, p), (b, q)| a == b && p >> 1 == q >> 1);
+    let singles = same.filter(|facets| facets.len() == 1);
+    Ok(singles.map(|f| facet(f[0].0, f[0].1)).collect())
+}
+
 /// Facets that occur once: put in bins by their smallest vertex, then sorted bin by bin.
 fn single_facets(
     cells: &[[u32; 4]],
@@ -98,7 +137,7 @@ fn single_facets(
     let mut ends = vec![0usize; vertices + 1];
     for cells in cells.chunks(CELLS_PER_CHECK) {
         task.check()?;
-        for facet in cells.iter().copied().flat_map(facets) {
+        for facet in cells.iter().copied().flat_map(outward) {
             ends[key(facet).0 as usize] += 1;
         }
     }
@@ -112,7 +151,7 @@ fn single_facets(
     let mut keys = vec![0u64; total];
     for cells in cells.chunks(CELLS_PER_CHECK) {
         task.check()?;
-        for facet in cells.iter().copied().flat_map(facets) {
+        for facet in cells.iter().copied().flat_map(outward) {
             let (first, key) = key(facet);
             let place = &mut ends[first as usize];
             keys[*place] = key;
@@ -156,12 +195,7 @@ fn singles_of_chunk(first_bin: usize, ends: Vec<usize>, keys: &mut [u64]) -> Vec
         keys.sort_unstable();
         for same in keys.chunk_by(|a, b| a >> 1 == b >> 1) {
             if let &[key] = same {
-                let (low, high) = ((key >> 32) as u32, (key as u32) >> 1);
-                singles.push(if key & 1 == 0 {
-                    [bin, low, high]
-                } else {
-                    [bin, high, low]
-                });
+                singles.push(facet(bin, key));
             }
         }
     }

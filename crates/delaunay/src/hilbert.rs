@@ -5,6 +5,8 @@
 //! cells of every intermediate state well shaped: a biased randomised insertion order
 //! (Amenta, Choi and Rote 2003). The order moves no result, only the time.
 
+use crate::points::Bounds;
+
 /// Levels of the curve: 2^12 steps along the longest side.
 const LEVELS: u32 = 12;
 /// Bits of randomness per round: a round is 2^2 times the one before. On skulls one round for all
@@ -54,13 +56,7 @@ fn mix(value: u64) -> u64 {
 
 /// Indices of `points` (mm) in the order of insertion.
 pub(crate) fn insertion_order(points: impl ExactSizeIterator<Item = [f64; 3]> + Clone) -> Vec<u32> {
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for p in points.clone() {
-        for k in 0..3 {
-            low[k] = low[k].min(p[k]);
-            high[k] = high[k].max(p[k]);
-        }
-    }
+    let Bounds { low, high } = Bounds::of(points.clone());
     let side = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
     let steps = f64::from((1u32 << LEVELS) - 1);
     // Equal points have no side; a huge one may overflow to infinity: one cell for all.

@@ -6,113 +6,140 @@
 //! 3. [`Triangulation::close`] joins the point to every facet of the rim.
 
 use crate::predicates::{Kernel, Site};
-use crate::triangulation::{Cell, Triangulation, UNUSED};
+use crate::star::Edges;
+use crate::triangulation::Triangulation;
 
-/// Vertices on the rim up to which edges are matched in a table.
-const TABLE_SIDE: usize = 64;
-/// An empty place in the table.
-const EMPTY: u32 = u32::MAX;
+/// Squared radius of a cell in conflict, which is about to go.
+const DOOMED: f64 = -1.0;
 
 /// A facet of the rim: its cell-to-be and what lies beyond.
 #[derive(Clone, Copy, Debug)]
-struct RimFacet {
+pub(crate) struct RimFacet {
     /// The conflicting cell's vertices, with the one opposite the facet replaced by the point.
-    vertices: [u32; 4],
+    pub(crate) vertices: [u32; 4],
     /// Which one that is.
-    facet: u32,
+    pub(crate) facet: u32,
     /// The facet seen from outside.
-    across: u32,
+    pub(crate) across: u32,
+    /// Numbers on the rim of the three vertices beside the point, see [`Edges`].
+    pub(crate) numbers: [u32; 3],
 }
 
 /// What one insertion needs, kept for the next one.
 #[derive(Default)]
 pub(crate) struct Cavity {
-    /// Mark of a cell found outside in this insertion; one more: inside.
-    outside: u32,
-    /// Cells in conflict; the queue of the search as well.
-    cells: Vec<u32>,
-    rim: Vec<RimFacet>,
-    edges: EdgeTable,
+    /// Cells in conflict, each with the facet through which it was entered (`4 cell + facet`);
+    /// the queue of the search as well.
+    pub(crate) entries: Vec<u32>,
+    pub(crate) rim: Vec<RimFacet>,
+    /// The new cell of each facet of the rim.
+    pub(crate) slots: Vec<u32>,
+    pub(crate) edges: Edges,
 }
 
-/// Finds, for a facet of a new cell, the other new cell with the same edge of the rim.
-#[derive(Default)]
-struct EdgeTable {
-    /// Number of a vertex on the rim; only valid where `rim_vertices` has it back.
-    number: Vec<u32>,
-    rim_vertices: Vec<u32>,
-    /// Square over rim vertices, all [`EMPTY`] between insertions.
-    table: Vec<u32>,
-    /// The edges of a rim too large for the table: vertices, facet.
-    list: Vec<([u32; 2], u32)>,
+/// The point that is inserted.
+struct Newcomer<'a, K: Kernel> {
+    vertex: u32,
+    site: &'a Site<K::Scalar>,
+    place_mm: [f64; 3],
 }
 
-impl EdgeTable {
-    #[inline]
-    fn number(&mut self, vertex: u32) -> usize {
-        let known = self.number[vertex as usize];
-        if self.rim_vertices.get(known as usize) == Some(&vertex) {
-            return known as usize;
-        }
-        let next = self.rim_vertices.len();
-        self.number[vertex as usize] = next as u32;
-        self.rim_vertices.push(vertex);
-        next
-    }
+/// What is seen out of a cell in conflict through one of its facets.
+#[derive(Clone, Copy)]
+struct Glance {
+    /// The facet, and the same from beyond.
+    facet: u32,
+    across: u32,
+    /// Whether the cell beyond is known to be in conflict.
+    is_doomed: bool,
+    /// Where its sphere has the point, see [`crate::sphere::Precision::side`].
+    side: f64,
 }
 
 impl<K: Kernel> Triangulation<'_, K> {
     /// Inserts `vertex`, which equals none before it; the number of new cells.
     pub(crate) fn insert(&mut self, vertex: u32, cavity: &mut Cavity) -> usize {
-        let query = self.sites[vertex as usize];
-        let start = self.locate(&query);
-        self.open(start, vertex, &query, cavity);
-        self.close(cavity);
+        let site = self.sites[vertex as usize];
+        let start = self.locate(&site);
+        let newcomer = Newcomer {
+            vertex,
+            site: &site,
+            place_mm: self.kernel.place_mm(&site.at),
+        };
+        self.open(start, &newcomer, cavity);
+        self.close(&site, newcomer.place_mm, cavity);
         cavity.rim.len()
     }
 
-    /// Collects the cells in conflict with `query` and their rim.
-    fn open(&mut self, start: u32, vertex: u32, query: &Site<K::Scalar>, cavity: &mut Cavity) {
-        cavity.outside += 2;
-        let (outside, inside) = (cavity.outside, cavity.outside + 1);
-        cavity.cells.clear();
+    /// Collects the cells in conflict and their rim.
+    fn open(&mut self, start: u32, newcomer: &Newcomer<'_, K>, cavity: &mut Cavity) {
+        cavity.entries.clear();
         cavity.rim.clear();
-        cavity.cells.push(start);
-        self.marks[start as usize] = inside;
+        cavity.entries.push(4 * start);
+        self.cells[start as usize].sphere.radius_squared = DOOMED;
+        // The start counts as entered through its facet 0, which nobody has looked through.
+        let glance = self.glance(4 * start, newcomer);
+        self.look(glance, newcomer, cavity);
         let mut next = 0;
-        while let Some(&at) = cavity.cells.get(next) {
+        while let Some(&entry) = cavity.entries.get(next) {
             next += 1;
-            let cell = self.cells[at as usize];
-            for (f, &across) in cell.neighbours.iter().enumerate() {
-                let beyond = across >> 2;
-                let mark = self.marks[beyond as usize];
-                if mark == inside {
-                    continue;
-                }
-                if mark != outside && self.conflicts(beyond, query) {
-                    self.marks[beyond as usize] = inside;
-                    cavity.cells.push(beyond);
-                    continue;
-                }
-                self.marks[beyond as usize] = outside;
-                let mut vertices = cell.vertices;
-                vertices[f] = vertex;
-                cavity.rim.push(RimFacet {
-                    vertices,
-                    facet: f as u32,
-                    across,
-                });
-            }
+            let facet = |turn: u32| (entry & !3) | ((entry + turn) & 3);
+            // All three at once, so that the memory of one is waited for with the others'.
+            let (a, b, c) = (
+                self.glance(facet(1), newcomer),
+                self.glance(facet(2), newcomer),
+                self.glance(facet(3), newcomer),
+            );
+            self.look(a, newcomer, cavity);
+            self.look(b, newcomer, cavity);
+            self.look(c, newcomer, cavity);
         }
     }
 
-    /// Whether a cell loses its place when `query` comes.
+    #[inline]
+    fn glance(&self, facet: u32, newcomer: &Newcomer<'_, K>) -> Glance {
+        let across = self.cells[(facet >> 2) as usize].neighbours[(facet & 3) as usize];
+        let sphere = &self.cells[(across >> 2) as usize].sphere;
+        Glance {
+            facet,
+            across,
+            is_doomed: sphere.radius_squared < 0.0,
+            side: self.precision.side(sphere, newcomer.place_mm),
+        }
+    }
+
+    /// Acts on a glance out of a cell in conflict: the cell beyond is in conflict as well, or the
+    /// facet is on the rim.
+    #[expect(clippy::inline_always, reason = "called 60 times for each point")]
+    #[inline(always)]
+    fn look(&mut self, glance: Glance, newcomer: &Newcomer<'_, K>, cavity: &mut Cavity) {
+        if glance.is_doomed {
+            return;
+        }
+        let beyond = glance.across >> 2;
+        if glance.side < 0.0 || (glance.side == 0.0 && self.conflicts(beyond, newcomer.site)) {
+            self.cells[beyond as usize].sphere.radius_squared = DOOMED;
+            cavity.entries.push(glance.across);
+            return;
+        }
+        let facet = glance.facet & 3;
+        let mut vertices = self.cells[(glance.facet >> 2) as usize].vertices;
+        vertices[facet as usize] = newcomer.vertex;
+        cavity.rim.push(RimFacet {
+            vertices,
+            facet,
+            across: glance.across,
+            numbers: [0; 3],
+        });
+    }
+
+    /// Whether a cell loses its place when `query` comes, exactly.
     ///
     /// An infinite cell does when the query lies strictly outside its hull facet. A query in the
     /// facet's plane takes part in the triangulation of that plane, where lifted points of the
     /// plane alone decide; the finite cell behind the facet meets the plane in just that circle,
     /// ties and all, so the query's conflict with it is the infinite cell's, too.
-    #[inline]
+    #[inline(never)]
     fn conflicts(&self, at: u32, query: &Site<K::Scalar>) -> bool {
         let mut cell = &self.cells[at as usize];
         if let Some(g) = cell.ghost() {
@@ -127,97 +154,4 @@ impl<K: Kernel> Triangulation<'_, K> {
         let corners = cell.vertices.map(|v| &self.sites[v as usize]);
         self.kernel.in_conflict(corners, query)
     }
-
-    /// Replaces the cells in conflict by one for each facet of the rim.
-    fn close(&mut self, cavity: &mut Cavity) {
-        let edges = &mut cavity.edges;
-        edges.number.resize(self.sites.len(), 0);
-        edges.table.resize(TABLE_SIDE * TABLE_SIDE, EMPTY);
-        edges.rim_vertices.clear();
-        // The rim is a sphere: v - e + f = 2 with 2 e = 3 f.
-        let small = cavity.rim.len() / 2 + 2 <= TABLE_SIDE;
-        let mut old = cavity.cells.iter();
-        for rim in &cavity.rim {
-            let slot = old.next().copied().or_else(|| self.unused.pop());
-            let slot = slot.unwrap_or(self.cells.len() as u32);
-            let facet = rim.facet as usize;
-            let mut cell = Cell {
-                vertices: rim.vertices,
-                neighbours: [EMPTY; 4],
-            };
-            cell.neighbours[facet] = rim.across;
-            if slot as usize == self.cells.len() {
-                self.cells.push(cell);
-                self.marks.push(0);
-            } else {
-                self.cells[slot as usize] = cell;
-            }
-            self.cells[(rim.across >> 2) as usize].neighbours[(rim.across & 3) as usize] =
-                4 * slot + rim.facet;
-            if small {
-                self.link(slot, rim, edges);
-            } else {
-                for (f, [i, j]) in rim_edges(facet) {
-                    let (u, v) = (rim.vertices[i], rim.vertices[j]);
-                    edges.list.push(([u.min(v), u.max(v)], 4 * slot + f as u32));
-                }
-            }
-            self.recent = slot;
-        }
-        if !small {
-            self.link_list(&mut edges.list);
-        }
-        for &slot in old {
-            self.cells[slot as usize].vertices = [UNUSED; 4];
-            self.unused.push(slot);
-        }
-    }
-
-    /// Joins the three inner facets of a new cell to those that are already there.
-    #[inline]
-    fn link(&mut self, slot: u32, rim: &RimFacet, edges: &mut EdgeTable) {
-        let facet = rim.facet as usize;
-        let mut number = [0; 4];
-        for (k, number) in number.iter_mut().enumerate() {
-            if k != facet {
-                *number = edges.number(rim.vertices[k]);
-            }
-        }
-        for (f, [i, j]) in rim_edges(facet) {
-            let (u, v) = (number[i], number[j]);
-            let place = &mut edges.table[u.min(v) * TABLE_SIDE + u.max(v)];
-            let this = 4 * slot + f as u32;
-            if *place == EMPTY {
-                *place = this;
-            } else {
-                // Each edge of the rim comes exactly twice, which leaves the table empty.
-                let mate = std::mem::replace(place, EMPTY);
-                self.join(this, mate);
-            }
-        }
-    }
-
-    /// The same for a rim of any size: equal edges become neighbours by sorting.
-    fn link_list(&mut self, list: &mut Vec<([u32; 2], u32)>) {
-        list.sort_unstable();
-        for pair in list.chunks_exact(2) {
-            self.join(pair[0].1, pair[1].1);
-        }
-        list.clear();
-    }
-
-    #[inline]
-    fn join(&mut self, a: u32, b: u32) {
-        self.cells[(a >> 2) as usize].neighbours[(a & 3) as usize] = b;
-        self.cells[(b >> 2) as usize].neighbours[(b & 3) as usize] = a;
-    }
-}
-
-/// The three facets beside `facet` of a cell whose vertex there is new, each with the places of
-/// the two vertices that it shares with the rim.
-#[inline]
-fn rim_edges(facet: usize) -> [(usize, [usize; 2]); 3] {
-    let others = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]][facet];
-    let [i, j, k] = others;
-    [(i, [j, k]), (j, [i, k]), (k, [i, j])]
 }

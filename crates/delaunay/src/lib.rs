@@ -8,14 +8,13 @@
 //! - the result depends on the coordinates alone: not on the order of the input but for the
 //!   numbering, not on the number of threads;
 //! - the alpha complex, found in parallel slabs, is exactly the part of that triangulation with
-//!   a circumradius of at most alpha, and its boundary is closed and faces outward.
+//!   a circumradius of at most alpha, to the last bit of alpha, and its boundary is closed and
+//!   faces outward.
 //!
 //! Limits: at most 2^30 tetrahedra at a time; lattice coordinates span at most 32,767 steps
 //! along an axis and their metric is rounded to `2^-40` of its largest entry; free coordinates
-//! are 0 or between 1e-45 and 1e55 in size. Circumradii are doubles with a relative error below
-//! 1e-7 (typically 1e-15); a free cell too flat for even that (its volume under about 1e-24 of
-//! the cube of its size) belongs to no finite alpha complex. A whole triangulation is built by
-//! one thread, an alpha complex by as many as it has slabs.
+//! are 0 or between 1e-45 and 1e55 in size. A whole triangulation is built by one thread, an
+//! alpha complex by as many as it has slabs.
 //!
 //! ```
 //! use bonemesh_delaunay::{Points, alpha_complex, tetrahedralize};
@@ -42,14 +41,16 @@
 //!    slab.)
 //! 3. `hilbert`: points are put in random rounds, each in the order of a Hilbert curve.
 //! 4. `locate`: from the last cell, walk to the cell that holds the next point.
-//! 5. `insert`: the cells whose circumsphere has the point inside give way to cells that join
-//!    the point to the cavity's rim. A ghost vertex at infinity makes the outside cells, too.
-//! 6. `predicates`: integers decide on a lattice, adaptive doubles on free points. A point
-//!    exactly on a circumsphere is decided by an infinitesimal raise of each point's *lift*,
-//!    larger for higher ranks, so all ties together are those of one true triangulation;
-//!    positions are not perturbed, which would leave flat cells.
-//! 7. `alpha`: cells are kept by circumradius, sorted, and named by the input's indices.
-//! 8. `boundary`: facets of one cell only, outward.
+//! 5. `insert`: the cells whose circumsphere has the point inside give way, and `star` joins the
+//!    point to the cavity's rim. A ghost vertex at infinity makes the outside cells, too.
+//! 6. `sphere`: each cell carries its circumsphere in doubles and knows how far these can be
+//!    trusted; nine of ten in-sphere questions end there.
+//! 7. `predicates`: integers decide the rest on a lattice, adaptive doubles on free points. A
+//!    point exactly on a circumsphere is decided by an infinitesimal raise of each point's
+//!    *lift*, larger for higher ranks, so all ties together are those of one true
+//!    triangulation; positions are not perturbed, which would leave flat cells.
+//! 8. `kept`: cells are kept by circumradius, and facets without a kept cell beyond are the
+//!    boundary; `alpha` puts cells and facets in order and names them by the input's indices.
 //!
 //! # References
 //! - A. Bowyer, *Computing Dirichlet tessellations*, 1981; D. F. Watson, *Computing the
@@ -69,13 +70,16 @@ mod boundary;
 mod error;
 mod hilbert;
 mod insert;
+mod kept;
 mod locate;
 mod points;
 mod predicates;
 mod slabs;
+mod sphere;
+mod star;
 mod triangulation;
 
-pub use alpha::{alpha_complex, tetrahedralize};
+pub use alpha::{alpha_boundary, alpha_complex, tetrahedralize};
 pub use error::DelaunayError;
 pub use points::Points;
 
@@ -85,4 +89,14 @@ pub use points::Points;
 pub struct Tetrahedra {
     /// Four point indices a cell.
     pub cells: Vec<[u32; 4]>,
+}
+
+/// The triangles that bound an alpha complex, and how many tetrahedra they enclose.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub struct AlphaBoundary {
+    /// Three point indices a triangle, counter-clockwise seen from outside in the input's
+    /// coordinates, sorted by their vertices, the smallest first.
+    pub triangles: Vec<[u32; 3]>,
+    /// How many tetrahedra the complex has.
+    pub tetrahedra: usize,
 }

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use crate::DelaunayError;
 use crate::predicates::{AnyLattice, FreeKernel, Kernel, Site};
+use crate::sphere::Precision;
 use crate::triangulation::{Span, span};
 
 /// Smallest size of a free coordinate other than 0: the fifth power of its last bit is a double.
@@ -47,6 +48,38 @@ pub(crate) struct Sites<K: Kernel> {
     pub(crate) sorted: Vec<Site<K::Scalar>>,
     /// Index in the input of each site; of equal points, the lowest.
     pub(crate) input: Vec<u32>,
+    pub(crate) bounds: Bounds,
+    pub(crate) precision: Precision,
+}
+
+/// Smallest and largest coordinates of places in mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Bounds {
+    pub(crate) low: [f64; 3],
+    pub(crate) high: [f64; 3],
+}
+
+impl Bounds {
+    /// Of any places; infinite and upside down where there are none.
+    pub(crate) fn of(places: impl Iterator<Item = [f64; 3]>) -> Self {
+        let mut bounds = Self {
+            low: [f64::INFINITY; 3],
+            high: [f64::NEG_INFINITY; 3],
+        };
+        for place in places {
+            for (k, v) in place.into_iter().enumerate() {
+                bounds.low[k] = bounds.low[k].min(v);
+                bounds.high[k] = bounds.high[k].max(v);
+            }
+        }
+        bounds
+    }
+
+    /// The coordinate that is largest in size.
+    fn largest(&self) -> f64 {
+        let all = self.low.iter().chain(&self.high);
+        all.fold(0.0, |largest, v| v.abs().max(largest))
+    }
 }
 
 /// [`Sites`] of any kind.
@@ -163,10 +196,14 @@ impl<K: Kernel> Sites<K> {
             .zip(0..)
             .map(|((at, input), rank)| (Site { at, rank }, input))
             .unzip();
+        let sorted: Vec<Site<K::Scalar>> = sorted;
+        let bounds = Bounds::of(sorted.iter().map(|s| kernel.place_mm(&s.at)));
         Ok(Self {
+            precision: Precision::new(kernel.difference_error(), bounds.largest()),
             kernel,
             sorted,
             input,
+            bounds,
         })
     }
 }

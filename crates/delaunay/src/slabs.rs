@@ -9,16 +9,15 @@
 //! - a cell found in the slab, with its centre there and `R <= alpha`, has no other point of the
 //!   whole set in its ball: it is a cell of the whole triangulation.
 //!
-//! Ties agree, because they are settled by the coordinates of the five points concerned. Centre
-//! and radius are computed from the four points in one order, so every slab that sees a cell
-//! computes the same bits and exactly one of them keeps it. What rounding they carry (at most
-//! 1e-7, else no sphere is returned) is covered by a wider margin.
+//! Ties agree, because they are settled by the coordinates of the five points concerned, and
+//! every slab that sees a cell finds the same owner for it (see [`crate::kept`]).
+
+use std::ops::RangeInclusive;
 
 use bonemesh_task::Task;
 use rayon::prelude::*;
 
 use crate::DelaunayError;
-use crate::alpha::{canonical, small_sphere};
 use crate::points::Sites;
 use crate::predicates::{Kernel, Site};
 use crate::triangulation::Triangulation;
@@ -29,23 +28,25 @@ const MARGIN_SHARE: f64 = 0.125;
 const POINTS_PER_SLAB: usize = 8192;
 /// Points looked at to place the cuts.
 const SAMPLES: usize = 1 << 16;
+/// Part of alpha that covers the rounding of centres.
+const ALPHA_ROUNDING: f64 = 1e-5;
 
 /// Where space is cut; depends on the points and alpha alone.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Slabs {
+    /// Of the kernel's places in mm.
     axis: usize,
-    /// Ascending; slab `i` is from cut `i - 1` to before cut `i`.
+    /// Ascending, in mm; slab `i` is from cut `i - 1` to before cut `i`.
     cuts: Vec<f64>,
-    /// How far a slab's points reach beyond it.
+    /// How far a slab's points reach beyond it: a ball of radius alpha and its rounding.
     margin: f64,
 }
 
 impl Slabs {
     /// As many slabs, a power of two, as keep the margins small, with equal shares of points.
     pub(crate) fn plan<K: Kernel>(sites: &Sites<K>, alpha: f64) -> Self {
-        let (axis, low, high) = longest_axis(sites);
-        let margin = margin(sites, axis, alpha, low, high);
-        let by_margin = 1.0 + MARGIN_SHARE * (high - low) / (2.0 * margin);
+        let (_, extent) = longest_axis(sites);
+        let by_margin = 1.0 + MARGIN_SHARE * extent / (2.0 * margin(sites, alpha));
         let by_points = sites.sorted.len() / POINTS_PER_SLAB;
         let slabs = (by_margin as usize).min(by_points).max(1);
         Self::with_count(sites, alpha, 1 << slabs.ilog2())
@@ -53,100 +54,114 @@ impl Slabs {
 
     /// `count` slabs with about equal shares of points.
     pub(crate) fn with_count<K: Kernel>(sites: &Sites<K>, alpha: f64, count: usize) -> Self {
-        let (axis, low, high) = longest_axis(sites);
+        let (axis, _) = longest_axis(sites);
+        let margin = margin(sites, alpha);
         let stride = sites.sorted.len().div_ceil(SAMPLES).max(1);
         let sampled = sites.sorted.iter().step_by(stride);
-        let mut places: Vec<f64> = sampled.map(|s| K::number(s.at[axis])).collect();
+        let mut places: Vec<f64> = sampled
+            .map(|s| sites.kernel.place_mm(&s.at)[axis])
+            .collect();
         places.sort_unstable_by(f64::total_cmp);
         let mut cuts: Vec<f64> = (1..count)
             .map(|i| places[i * places.len() / count])
             .collect();
         cuts.dedup();
-        Self {
-            axis,
-            cuts,
-            margin: margin(sites, axis, alpha, low, high),
+        // Where places are as coarse as alpha, no cut is safe.
+        if margin > 2.0 * alpha {
+            cuts.clear();
         }
+        Self { axis, cuts, margin }
     }
 
-    fn owner(&self, centre: [f64; 3]) -> usize {
-        self.cuts.partition_point(|&cut| cut <= centre[self.axis])
+    /// How many slabs there are.
+    pub(crate) fn len(&self) -> usize {
+        self.cuts.len() + 1
+    }
+
+    /// The slab that holds a place.
+    #[inline]
+    pub(crate) fn owner(&self, place_mm: [f64; 3]) -> usize {
+        let along = place_mm[self.axis];
+        self.cuts.partition_point(|&cut| cut <= along)
+    }
+
+    /// The slab that holds everything within `reach` of a place, if one does.
+    #[inline]
+    pub(crate) fn only_owner(&self, place_mm: [f64; 3], reach: f64) -> Option<usize> {
+        let along = place_mm[self.axis];
+        let owner = self.cuts.partition_point(|&cut| cut <= along - reach);
+        let next = self.cuts.get(owner);
+        next.is_none_or(|&cut| along + reach < cut).then_some(owner)
+    }
+
+    /// Whether a place is so deep in its slab that every ball of radius alpha which touches it
+    /// has its centre there.
+    #[inline]
+    pub(crate) fn is_deep(&self, slab: usize, place_mm: [f64; 3]) -> bool {
+        self.reach(slab, -self.margin)
+            .contains(&place_mm[self.axis])
+    }
+
+    /// A slab, wider by `margin` at each cut.
+    #[inline]
+    fn reach(&self, slab: usize, margin: f64) -> RangeInclusive<f64> {
+        let below = slab.checked_sub(1).map(|i| self.cuts[i] - margin);
+        let above = self.cuts.get(slab).map(|cut| cut + margin);
+        below.unwrap_or(f64::NEG_INFINITY)..=above.unwrap_or(f64::INFINITY)
     }
 
     /// The sites of each slab and its margins, in the order of ranks.
     fn share_out<K: Kernel>(&self, sites: &Sites<K>) -> Vec<Vec<Site<K::Scalar>>> {
-        (0..=self.cuts.len())
-            .into_par_iter()
-            .map(|slab| {
-                let from = slab
-                    .checked_sub(1)
-                    .map_or(f64::NEG_INFINITY, |i| self.cuts[i]);
-                let to = self.cuts.get(slab).copied().unwrap_or(f64::INFINITY);
-                let closed = from - self.margin..=to + self.margin;
-                let within = |s: &&Site<K::Scalar>| closed.contains(&K::number(s.at[self.axis]));
-                sites.sorted.iter().filter(within).copied().collect()
-            })
-            .collect()
+        let shares = (0..self.len()).into_par_iter().map(|slab| {
+            let reach = self.reach(slab, self.margin);
+            let along = |s: &Site<K::Scalar>| sites.kernel.place_mm(&s.at)[self.axis];
+            let within = |s: &&Site<K::Scalar>| reach.contains(&along(s));
+            sites.sorted.iter().filter(within).copied().collect()
+        });
+        shares.collect()
+    }
+
+    /// Triangulates every slab and gives each triangulation, with its slab's number, to
+    /// `harvest`. A slab may hold too few points, or a flat set of them: it has no cell, and
+    /// nothing to harvest. The stage is `tetrahedra`.
+    pub(crate) fn triangulate<K: Kernel, T: Send>(
+        &self,
+        sites: &Sites<K>,
+        task: &Task,
+        harvest: impl Fn(usize, &Triangulation<'_, K>) -> Result<T, DelaunayError> + Sync,
+    ) -> Result<Vec<T>, DelaunayError> {
+        let shares = self.share_out(sites);
+        task.begin("tetrahedra", shares.iter().map(Vec::len).sum());
+        let harvests = shares.into_par_iter().enumerate().map(|(slab, share)| {
+            match Triangulation::build(sites, &share, task)? {
+                Some(found) => harvest(slab, &found).map(Some),
+                None => Ok(None),
+            }
+        });
+        let harvests: Vec<Option<T>> = harvests.collect::<Result<_, DelaunayError>>()?;
+        Ok(harvests.into_iter().flatten().collect())
     }
 }
 
-/// The axis of the largest extent in mm, and that extent in coordinates.
-fn longest_axis<K: Kernel>(sites: &Sites<K>) -> (usize, f64, f64) {
-    let step = sites.kernel.step_mm();
-    let extent = |axis: usize| {
-        let values = sites.sorted.iter().map(|s| K::number(s.at[axis]));
-        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
-            (low.min(v), high.max(v))
-        })
-    };
-    let mut longest = (0, 0.0, 0.0);
-    for axis in 0..3 {
-        let (low, high) = extent(axis);
-        if (high - low) * step[axis] > (longest.2 - longest.1) * step[longest.0] {
-            longest = (axis, low, high);
-        }
-    }
-    longest
+/// The axis of the largest extent, and that extent in mm.
+fn longest_axis<K: Kernel>(sites: &Sites<K>) -> (usize, f64) {
+    let extent = |k: usize| sites.bounds.high[k] - sites.bounds.low[k];
+    let longer = |i: usize, j: usize| if extent(j) > extent(i) { j } else { i };
+    let axis = longer(longer(0, 1), 2);
+    (axis, extent(axis))
 }
 
-/// The reach of a ball of radius alpha, and room for the rounding of its centre and radius.
-fn margin<K: Kernel>(sites: &Sites<K>, axis: usize, alpha: f64, low: f64, high: f64) -> f64 {
-    let rounding = 1e-12 * low.abs().max(high.abs());
-    sites.kernel.reach(axis, alpha) * (1.0 + 1e-5) + rounding
-}
-
-/// The cells with a circumradius of at most `alpha`, as ranks, in no particular order.
-pub(crate) fn in_slabs<K: Kernel>(
-    sites: &Sites<K>,
-    alpha: f64,
-    slabs: &Slabs,
-    task: &Task,
-) -> Result<Vec<[u32; 4]>, DelaunayError> {
-    let shares = slabs.share_out(sites);
-    task.begin("tetrahedra", shares.iter().map(Vec::len).sum());
-    let cells: Vec<Vec<[u32; 4]>> = shares
-        .into_par_iter()
-        .enumerate()
-        .map(|(slab, share)| {
-            // A slab may hold too few points, or a flat set of them: then it has no cell.
-            let Some(found) = Triangulation::build(&sites.kernel, &share, task)? else {
-                return Ok(Vec::new());
-            };
-            let kept = found.finite_cells().filter_map(|cell| {
-                let (ranks, cell) = canonical(cell);
-                let sphere = small_sphere(&sites.kernel, &cell, alpha)?;
-                (slabs.owner(sphere.centre) == slab).then_some(ranks)
-            });
-            Ok(kept.collect())
-        })
-        .collect::<Result<_, DelaunayError>>()?;
-    Ok(cells.concat())
+/// The reach of a ball of radius alpha, and room for the rounding of places and centres.
+fn margin<K: Kernel>(sites: &Sites<K>, alpha: f64) -> f64 {
+    alpha * (1.0 + ALPHA_ROUNDING) + 4.0 * sites.precision.place
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::Points;
+    use crate::boundary::single_facets_sorted;
+    use crate::kept::Kept;
     use crate::points::AnySites;
     use crate::predicates::FreeKernel;
     use proptest::prelude::*;
@@ -158,26 +173,34 @@ mod tests {
         }
     }
 
-    /// Cells of the whole triangulation that alpha keeps.
-    fn whole<K: Kernel>(sites: &Sites<K>, alpha: f64) -> Vec<[u32; 4]> {
-        let task = Task::default();
-        let built = Triangulation::build(&sites.kernel, &sites.sorted, &task).unwrap();
-        let mut cells: Vec<[u32; 4]> = built
-            .unwrap()
-            .finite_cells()
-            .map(canonical)
-            .filter(|(_, cell)| small_sphere(&sites.kernel, cell, alpha).is_some())
-            .map(|(ranks, _)| ranks)
-            .collect();
-        cells.sort_unstable();
-        cells
+    /// Ranks of cells and of boundary triangles.
+    type Complex = (Vec<[u32; 4]>, Vec<[u32; 3]>);
+
+    /// Cells of the whole triangulation that alpha keeps, and the boundary made from these.
+    fn whole<K: Kernel>(sites: &Sites<K>, alpha: f64) -> Complex {
+        let (cells, _) = in_pieces(sites, alpha, 1);
+        let boundary = crate::Tetrahedra {
+            cells: cells.clone(),
+        };
+        let boundary = boundary.boundary(&Task::default()).unwrap();
+        (cells, boundary)
     }
 
-    fn in_pieces<K: Kernel>(sites: &Sites<K>, alpha: f64, count: usize) -> Vec<[u32; 4]> {
+    fn in_pieces<K: Kernel>(sites: &Sites<K>, alpha: f64, count: usize) -> Complex {
         let slabs = Slabs::with_count(sites, alpha, count);
-        let mut cells = in_slabs(sites, alpha, &slabs, &Task::default()).unwrap();
+        let found = slabs.triangulate(sites, &Task::default(), |slab, found| {
+            let kept = Kept::new(found, alpha, &slabs, slab);
+            assert_eq!(kept.count(), kept.ranks().len());
+            Ok((kept.ranks(), kept.facets(&slabs, slab)))
+        });
+        let (cells, facets): (Vec<_>, Vec<_>) = found.unwrap().into_iter().unzip();
+        let mut cells = cells.concat();
         cells.sort_unstable();
-        cells
+        let facets = facets.concat().into_par_iter();
+        (
+            cells,
+            single_facets_sorted(facets, &Task::default()).unwrap(),
+        )
     }
 
     proptest! {
@@ -248,9 +271,9 @@ mod tests {
         let Ok(AnySites::Upright(sites)) = AnySites::new(lattice) else {
             panic!("an upright lattice");
         };
-        let cells = in_pieces(&sites, 2.0, 3);
-        assert_eq!(cells, whole(&sites, 2.0));
-        assert!(cells.len() >= 8 * 5);
+        let found = in_pieces(&sites, 2.0, 3);
+        assert_eq!(found, whole(&sites, 2.0));
+        assert!(found.0.len() >= 8 * 5);
     }
 
     #[test]

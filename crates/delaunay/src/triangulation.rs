@@ -14,7 +14,9 @@ use bonemesh_task::Task;
 use crate::DelaunayError;
 use crate::hilbert::insertion_order;
 use crate::insert::Cavity;
+use crate::points::Sites;
 use crate::predicates::{Kernel, Site};
+use crate::sphere::{Precision, Sphere};
 
 /// The vertex at infinity.
 pub(crate) const GHOST: u32 = 0;
@@ -25,11 +27,18 @@ pub(crate) const CELL_LIMIT: usize = 1 << 30;
 /// New cells between two looks at the cancel switch: a few milliseconds.
 const CELLS_PER_CHECK: usize = 1 << 14;
 
-/// A tetrahedron: its vertices, and facet `f` seen from the other side for each `f`.
+/// Room made for cells: somewhat more than random points need.
+const CELLS_PER_POINT: usize = 7;
+
+/// A tetrahedron: its vertices, facet `f` seen from the other side for each `f`, its sphere.
+///
+/// All that an insertion asks of a cell it passes is in one line of the cache.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
 pub(crate) struct Cell {
     pub(crate) vertices: [u32; 4],
     pub(crate) neighbours: [u32; 4],
+    pub(crate) sphere: Sphere,
 }
 
 impl Cell {
@@ -39,6 +48,12 @@ impl Cell {
         let [a, b, c, d] = self.vertices;
         // The ghost is 0, and a minimum has no branch: this is asked of every cell looked at.
         a.min(b).min(c.min(d)) == GHOST
+    }
+
+    /// Whether the cell is in use and has no ghost.
+    #[inline]
+    pub(crate) fn is_finite(&self) -> bool {
+        self.vertices[0] != UNUSED && !self.is_infinite()
     }
 
     /// The place of the ghost among the vertices, if the cell is infinite.
@@ -58,8 +73,7 @@ pub(crate) struct Triangulation<'k, K: Kernel> {
     /// The points; the first is a stand-in for the ghost and never looked at.
     pub(crate) sites: Vec<Site<K::Scalar>>,
     pub(crate) cells: Vec<Cell>,
-    /// What the insertion of a number says of each cell, see [`Cavity`].
-    pub(crate) marks: Vec<u32>,
+    pub(crate) precision: Precision,
     /// Cells not in use.
     pub(crate) unused: Vec<u32>,
     /// Where the next walk starts.
@@ -104,18 +118,14 @@ where
 }
 
 impl<'k, K: Kernel> Triangulation<'k, K> {
-    /// The Delaunay triangulation of distinct `points`, or `None` where they span no space.
+    /// The Delaunay triangulation of `points`, some of `of`, or `None` where they span no space.
     pub(crate) fn build(
-        kernel: &'k K,
+        of: &'k Sites<K>,
         points: &[Site<K::Scalar>],
         task: &Task,
     ) -> Result<Option<Self>, DelaunayError> {
-        let step = kernel.step_mm();
-        let order = insertion_order(
-            points
-                .iter()
-                .map(|s| [0, 1, 2].map(|k| K::number(s.at[k]) * step[k])),
-        );
+        let kernel = &of.kernel;
+        let order = insertion_order(points.iter().map(|s| kernel.place_mm(&s.at)));
         let mut sites: Vec<Site<K::Scalar>> = order.iter().map(|&i| points[i as usize]).collect();
         let Span::Space(first) = span(kernel, sites.iter().map(|s| &s.at)) else {
             return Ok(None);
@@ -133,8 +143,8 @@ impl<'k, K: Kernel> Triangulation<'k, K> {
         );
         let mut triangulation = Self {
             kernel,
-            cells: Vec::with_capacity(8 * sites.len()),
-            marks: Vec::with_capacity(8 * sites.len()),
+            cells: Vec::with_capacity(CELLS_PER_POINT * sites.len()),
+            precision: of.precision,
             sites,
             unused: Vec::new(),
             recent: 0,
@@ -153,6 +163,7 @@ impl<'k, K: Kernel> Triangulation<'k, K> {
         self.cells.push(Cell {
             vertices,
             neighbours: [4, 9, 14, 19],
+            sphere: Sphere::UNKNOWN,
         });
         for f in 0..4 {
             // The ghost is beyond facet `f`, opposite the vertex it replaces: swap two others.
@@ -163,6 +174,7 @@ impl<'k, K: Kernel> Triangulation<'k, K> {
             self.cells.push(Cell {
                 vertices: outer,
                 neighbours: [f as u32; 4],
+                sphere: Sphere::UNKNOWN,
             });
         }
         for c in 1..5 {
@@ -176,7 +188,6 @@ impl<'k, K: Kernel> Triangulation<'k, K> {
                 };
             }
         }
-        self.marks.resize(self.cells.len(), 0);
     }
 
     /// Among the first five cells: the facet of the infinite cell without vertex `lacking` that
@@ -221,11 +232,14 @@ impl<'k, K: Kernel> Triangulation<'k, K> {
         vertices.map(|v| &self.sites[v as usize].at)
     }
 
-    /// The finite cells' sites.
-    pub(crate) fn finite_cells(&self) -> impl Iterator<Item = [Site<K::Scalar>; 4]> {
-        self.cells
-            .iter()
-            .filter(|c| c.vertices[0] != UNUSED && !c.is_infinite())
-            .map(|c| c.vertices.map(|v| self.sites[v as usize]))
+    /// The sites of a finite cell.
+    #[inline]
+    pub(crate) fn cell_sites(&self, cell: &Cell) -> [Site<K::Scalar>; 4] {
+        cell.vertices.map(|v| self.sites[v as usize])
+    }
+
+    /// The finite cells.
+    pub(crate) fn finite_cells(&self) -> impl Iterator<Item = &Cell> {
+        self.cells.iter().filter(|c| c.is_finite())
     }
 }

@@ -195,10 +195,34 @@ fn the_circumradius_may_equal_alpha() {
         points: &cube,
         gram: CUBIC,
     };
-    let radius = 0.75f64.sqrt();
-    let whole = alpha_complex(oracle.lattice(), radius, &Task::default()).unwrap();
+    // The square root of 3/4 lies between two doubles: no rounding may blur that.
+    let above = 0.75f64.sqrt().next_up();
+    let whole = alpha_complex(oracle.lattice(), above, &Task::default()).unwrap();
     assert_eq!(whole, oracle.tetrahedra().unwrap());
     assert!((whole.volume_mm3(oracle.lattice()) - 1.0).abs() < 1e-15);
-    let none = alpha_complex(oracle.lattice(), radius * (1.0 - 1e-12), &Task::default()).unwrap();
+    let below = 0.75f64.sqrt();
+    let none = alpha_complex(oracle.lattice(), below, &Task::default()).unwrap();
     assert!(none.cells.is_empty() && none.boundary(&Task::default()).unwrap().is_empty());
+}
+
+#[test]
+fn a_circumradius_of_exactly_alpha_is_kept_with_all_its_cospherical_cells() {
+    // Boxes of 2 x 2 x 1 mm have a circumradius of 1.5 mm; five or six cells each share it.
+    let points = block([9, 8, 7]);
+    let gram = [[4, 0, 0], [0, 4, 0], [0, 0, 1]];
+    let oracle = Oracle {
+        points: &points,
+        gram,
+    };
+    let whole = oracle.tetrahedra().unwrap();
+    let free: Vec<[f64; 3]> = points
+        .iter()
+        .map(|&[x, y, z]| [2.0 * f64::from(x), 2.0 * f64::from(y), f64::from(z)])
+        .collect();
+    for cloud in [oracle.lattice(), Points::Free(&free)] {
+        let kept = alpha_complex(cloud, 1.5, &Task::default()).unwrap();
+        assert_eq!(kept, whole);
+        let none = alpha_complex(cloud, 1.5f64.next_down(), &Task::default()).unwrap();
+        assert!(none.cells.is_empty());
+    }
 }

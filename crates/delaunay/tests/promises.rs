@@ -2,7 +2,9 @@
 
 mod common;
 
-use bonemesh_delaunay::{DelaunayError, Points, Tetrahedra, alpha_complex, tetrahedralize};
+use bonemesh_delaunay::{
+    AlphaBoundary, DelaunayError, Points, Tetrahedra, alpha_boundary, alpha_complex, tetrahedralize,
+};
 use bonemesh_task::{Task, pool};
 use common::{CUBIC, Oracle, SLICES, as_f64, block, cospherical, named, nasty};
 use proptest::prelude::*;
@@ -149,6 +151,11 @@ proptest! {
         let oracle = Oracle { points: &points, gram: SLICES };
         if let Ok(cells) = alpha_complex(oracle.lattice(), alpha, &Task::default()) {
             let boundary = cells.boundary(&Task::default()).unwrap();
+            let direct = alpha_boundary(oracle.lattice(), alpha, &Task::default()).unwrap();
+            prop_assert_eq!(&direct.triangles, &boundary);
+            prop_assert_eq!(direct.tetrahedra, cells.cells.len());
+            let volume = cells.volume_mm3(oracle.lattice());
+            prop_assert!((direct.volume_mm3(oracle.lattice()) - volume).abs() < 1e-9);
             let mut balance = std::collections::HashMap::new();
             for [a, b, c] in &boundary {
                 for (u, v) in [(a, b), (b, c), (c, a)] {
@@ -230,18 +237,23 @@ fn any_number_of_threads_gives_the_same_bytes() {
         coordinates: &points,
         gram,
     };
-    let runs: Vec<(Tetrahedra, Vec<[u32; 3]>)> = [1, 2, 3, 8]
+    let runs: Vec<(Tetrahedra, AlphaBoundary)> = [1, 2, 3, 8]
         .into_iter()
         .map(|n| {
             let pool = pool(std::num::NonZeroUsize::new(n)).unwrap();
             pool.install(|| {
                 let cells = alpha_complex(lattice, 1.5, &Task::default()).unwrap();
-                let boundary = cells.boundary(&Task::default()).unwrap();
+                let boundary = alpha_boundary(lattice, 1.5, &Task::default()).unwrap();
                 (cells, boundary)
             })
         })
         .collect();
-    assert!(runs[0].0.cells.len() > points.len());
+    let (cells, boundary) = &runs[0];
+    assert!(cells.cells.len() > points.len());
+    assert_eq!(
+        boundary.triangles,
+        cells.boundary(&Task::default()).unwrap()
+    );
     assert!(runs.iter().all(|run| *run == runs[0]));
 }
 

@@ -1,7 +1,7 @@
 //! From the tetrahedra of a bone-like shell to its surface.
 
 use bonemesh_cloud::{Lattice, PointCloud};
-use bonemesh_surface::{alpha_tetrahedra, boundary_surface};
+use bonemesh_surface::{alpha_boundary, boundary_surface};
 use bonemesh_task::Task;
 use bonemesh_volume::Affine;
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -33,9 +33,9 @@ fn shell() -> PointCloud {
 fn bench(c: &mut Criterion) {
     let task = Task::default();
     let cloud = shell();
-    let cells = alpha_tetrahedra(&cloud, ALPHA_MM, &task).expect("a shell has cells");
+    let boundary = alpha_boundary(&cloud, ALPHA_MM, &task).expect("a shell has cells");
     c.bench_function("surface of a lattice shell", |b| {
-        b.iter(|| boundary_surface(black_box(&cloud), black_box(&cells), &task));
+        b.iter(|| boundary_surface(black_box(&cloud), boundary.clone(), &task));
     });
 }
 

@@ -11,7 +11,7 @@
 //! they bound no volume.
 
 use bonemesh_cloud::PointCloud;
-use bonemesh_delaunay::{Points, Tetrahedra, alpha_complex};
+use bonemesh_delaunay::{AlphaBoundary, Points};
 use bonemesh_mesh::TriangleMesh;
 use bonemesh_task::Task;
 
@@ -32,7 +32,7 @@ pub struct AlphaSurface {
 }
 
 /// The surface of the Delaunay tetrahedra of `cloud` with a circumradius of at most `alpha_mm`:
-/// [`alpha_tetrahedra`], then [`boundary_surface`].
+/// [`alpha_boundary`], then [`boundary_surface`].
 ///
 /// # Errors
 /// Those of both.
@@ -41,45 +41,45 @@ pub fn alpha_surface(
     alpha_mm: f64,
     task: &Task,
 ) -> Result<AlphaSurface, SurfaceError> {
-    let cells = alpha_tetrahedra(cloud, alpha_mm, task)?;
-    boundary_surface(cloud, &cells, task)
+    let boundary = alpha_boundary(cloud, alpha_mm, task)?;
+    boundary_surface(cloud, boundary, task)
 }
 
-/// The Delaunay tetrahedra of `cloud` with a circumradius of at most `alpha_mm`.
+/// The boundary of the Delaunay tetrahedra of `cloud` with a circumradius of at most `alpha_mm`.
 ///
 /// An infinite alpha keeps them all. The stage is `tetrahedra`.
 ///
 /// # Errors
 /// [`SurfaceError::Alpha`], [`SurfaceError::NothingKept`], and [`SurfaceError::Delaunay`] where
 /// the points enclose no space.
-pub fn alpha_tetrahedra(
+pub fn alpha_boundary(
     cloud: &PointCloud,
     alpha_mm: f64,
     task: &Task,
-) -> Result<Tetrahedra, SurfaceError> {
+) -> Result<AlphaBoundary, SurfaceError> {
     if alpha_mm.is_nan() || alpha_mm <= 0.0 {
         return Err(SurfaceError::Alpha(alpha_mm));
     }
-    let cells = alpha_complex(points(cloud), alpha_mm, task)?;
-    if cells.cells.is_empty() {
+    let boundary = bonemesh_delaunay::alpha_boundary(points(cloud), alpha_mm, task)?;
+    if boundary.tetrahedra == 0 {
         return Err(SurfaceError::NothingKept { alpha_mm });
     }
-    Ok(cells)
+    Ok(boundary)
 }
 
-/// The outward boundary of tetrahedra over the points of `cloud`. The stage is `surface`.
+/// The boundary of tetrahedra over the points of `cloud` as a mesh. The stage is `surface`.
 ///
 /// # Errors
 /// [`SurfaceError::Cancelled`]
 pub fn boundary_surface(
     cloud: &PointCloud,
-    cells: &Tetrahedra,
+    boundary: AlphaBoundary,
     task: &Task,
 ) -> Result<AlphaSurface, SurfaceError> {
-    task.begin("surface", 3);
-    let volume_mm3 = cells.volume_mm3(points(cloud));
-    task.advance(1)?;
-    let mut triangles = cells.boundary(task)?;
+    task.begin("surface", 2);
+    let volume_mm3 = boundary.volume_mm3(points(cloud));
+    let tetrahedra = boundary.tetrahedra;
+    let mut triangles = boundary.triangles;
     task.advance(1)?;
     let frame = cloud.lattice().map(|l| &l.frame_from_lattice);
     if frame.is_some_and(|f| f.determinant() < 0.0) {
@@ -93,7 +93,7 @@ pub fn boundary_surface(
     task.advance(1)?;
     Ok(AlphaSurface {
         mesh,
-        tetrahedra: cells.cells.len(),
+        tetrahedra,
         volume_mm3,
     })
 }

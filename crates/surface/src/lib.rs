@@ -24,7 +24,7 @@
 
 mod alpha;
 
-pub use alpha::{AlphaSurface, alpha_surface, alpha_tetrahedra, boundary_surface};
+pub use alpha::{AlphaSurface, alpha_boundary, alpha_surface, boundary_surface};
 use bonemesh_delaunay::DelaunayError;
 use bonemesh_mesh::MeshError;
 use bonemesh_task::Cancelled;

@@ -1,9 +1,10 @@
 //! Predicates on free doubles: Shewchuk's adaptive arithmetic through the crate `robust`.
 
+use num_bigint::BigInt;
 use robust::{Coord, Coord3D, insphere, orient2d, orient3d};
 
-use super::circumsphere::{self, CERTAIN, Circumsphere, Double, GOOD, ROUNDING};
-use super::{Kernel, Site, settle_tie};
+use super::exact_sphere::decode;
+use super::{ExactSphere, Kernel, Site, settle_tie};
 
 /// Free points in mm.
 #[derive(Clone, Copy, Debug)]
@@ -16,19 +17,6 @@ fn coord(p: &[f64; 3]) -> Coord3D<f64> {
         y: p[1],
         z: p[2],
     }
-}
-
-/// `D`, `N` and whether both are known to `tolerance`; `rounding` is the error of one operation.
-fn certified(edges: [[f64; 3]; 3], d: f64, n: [f64; 3], rounding: f64, tolerance: f64) -> bool {
-    let widest = edges
-        .as_flattened()
-        .iter()
-        .fold(0.0, |m: f64, v| m.max(v.abs()));
-    let cube = widest * widest * widest;
-    let norm = n.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-    // D sums 6 products, N 18, each of a few rounded factors no larger than `widest`.
-    64.0 * rounding * cube <= tolerance * d.abs()
-        && 512.0 * rounding * cube * widest <= tolerance * norm
 }
 
 impl Kernel for FreeKernel {
@@ -61,35 +49,32 @@ impl Kernel for FreeKernel {
         })
     }
 
-    fn circumsphere(&self, [a, b, c, d]: [&[f64; 3]; 4]) -> Option<Circumsphere> {
-        let edges = [b, c, d].map(|p| [0, 1, 2].map(|k| p[k] - a[k]));
-        let lengths = edges.map(|e| e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
-        let (mut volume, mut n) = circumsphere::terms(edges, lengths);
-        if !certified(edges, volume, n, ROUNDING, GOOD) {
-            let wide = [b, c, d].map(|p| [0, 1, 2].map(|k| Double::difference(p[k], a[k])));
-            let lengths = wide.map(|e| e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
-            let (wide_volume, wide_n) = circumsphere::terms(wide, lengths);
-            (volume, n) = (wide_volume.0, wide_n.map(|v| v.0));
-            if !certified(edges, volume, n, ROUNDING * ROUNDING * 64.0, CERTAIN) {
-                return None;
-            }
-        }
-        let half = n.map(|v| v / (2.0 * volume));
-        Some(Circumsphere {
-            centre: [0, 1, 2].map(|k| a[k] + half[k]),
-            radius_squared: half[0] * half[0] + half[1] * half[1] + half[2] * half[2],
-        })
+    fn exact_sphere(&self, corners: [&[f64; 3]; 4]) -> ExactSphere {
+        let parts = corners.map(|p| p.map(decode));
+        let used = parts
+            .as_flattened()
+            .iter()
+            .filter(|(mantissa, _)| *mantissa != 0);
+        let step_exponent = used.map(|&(_, exponent)| exponent).min().unwrap_or(0);
+        let whole = parts.map(|p| {
+            p.map(|(mantissa, exponent)| {
+                // A zero may have any exponent.
+                BigInt::from(mantissa) << (exponent - step_exponent).max(0)
+            })
+        });
+        ExactSphere::new(whole, [1, 1, 1, 0, 0, 0], 2 * step_exponent, step_exponent)
     }
 
-    fn number(value: f64) -> f64 {
-        value
+    #[inline]
+    fn difference_mm(&self, a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+        [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
     }
 
-    fn step_mm(&self) -> [f64; 3] {
-        [1.0; 3]
+    fn difference_error(&self) -> f64 {
+        f64::EPSILON
     }
 
-    fn reach(&self, _axis: usize, radius_mm: f64) -> f64 {
-        radius_mm
+    fn vector_mm(&self, vector: [f64; 3]) -> [f64; 3] {
+        vector
     }
 }

@@ -6,8 +6,11 @@
 //! enters as integers `g_ij` below 2^41. Doubles then decide all but the closest calls
 //! and i128 decides those, in a few nanoseconds, so ties cost no more than other queries.
 
-use super::circumsphere::{self, Circumsphere, Ring};
-use super::{Kernel, Site, settle_tie};
+use std::ops::{Add, Mul, Sub};
+
+use num_bigint::BigInt;
+
+use super::{ExactSphere, Kernel, Site, settle_tie};
 use crate::DelaunayError;
 
 /// The largest difference of coordinates along one axis.
@@ -33,17 +36,16 @@ pub(crate) struct LatticeKernel<const TILTED: bool> {
     weights: [i64; 6],
     /// The same as doubles (exact, they have at most 41 bits).
     weights_f64: [f64; 6],
-    /// mm^2 for one unit of `weights`.
-    unit: f64,
-    inverse: [[f64; 3]; 3],
-    step_mm: [f64; 3],
+    /// mm^2 for one unit of `weights` is two to this power.
+    unit_exponent: i32,
+    frame: MetricFrame,
 }
 
-/// The metric rounded to integers: entries times a power of two, and that power's inverse.
+/// The metric rounded to integers, its unit two to a power of mm^2, and its axes in mm.
 ///
 /// Direction cosines in files carry rounding, so a right angle shows up as an entry of 1e-17;
 /// 40 bits are far finer than any scanner and make such an entry the zero that it should be.
-fn integer_gram(gram: [[f64; 3]; 3]) -> Result<([i64; 6], f64), DelaunayError> {
+fn integer_gram(gram: [[f64; 3]; 3]) -> Result<Metric, DelaunayError> {
     let bad = || DelaunayError::Gram { gram };
     let entries = PAIRS.map(|(i, j)| f64::midpoint(gram[i][j], gram[j][i]));
     let largest = entries.iter().fold(0.0, |m: f64, e| m.max(e.abs()));
@@ -64,22 +66,65 @@ fn integer_gram(gram: [[f64; 3]; 3]) -> Result<([i64; 6], f64), DelaunayError> {
         return Err(bad());
     }
     let doubled = [g[0], g[1], g[2], 2 * g[3], 2 * g[4], 2 * g[5]];
-    Ok((doubled, 1.0 / scale))
+    Ok(Metric {
+        weights: doubled,
+        unit_exponent: exponent + 1 - GRAM_BITS,
+        frame: MetricFrame::new(g.map(|v| v as f64 / scale), third as f64 / scale.powi(3)),
+    })
 }
 
-/// Inverse of a symmetric positive definite matrix.
-fn inverse([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> [[f64; 3]; 3] {
-    let c = [
-        yy * zz - yz * yz,
-        xx * zz - xz * xz,
-        xx * yy - xy * xy,
-        xz * yz - xy * zz,
-        xy * yz - xz * yy,
-        xy * xz - xx * yz,
-    ];
-    let det = xx * c[0] + xy * c[3] + xz * c[4];
-    let [a, b, c, ab, ac, bc] = c.map(|v| v / det);
-    [[a, ab, ac], [ab, b, bc], [ac, bc, c]]
+struct Metric {
+    weights: [i64; 6],
+    unit_exponent: i32,
+    frame: MetricFrame,
+}
+
+/// The axes of a lattice in mm: a triangular root of its metric.
+#[derive(Clone, Debug)]
+struct MetricFrame {
+    /// Column `k` holds the components of a step along axis `k`, those below `k` being zero:
+    /// `[x, (x, y), (x, y, z)]`.
+    x: f64,
+    y: [f64; 2],
+    z: [f64; 3],
+    /// Relative error of lengths measured with it.
+    error: f64,
+}
+
+impl MetricFrame {
+    /// Cholesky's root of a metric with the given determinant.
+    ///
+    /// It is the root of a metric that is off by a few roundings of the trace `t`. The smallest
+    /// eigenvalue is at least `4 det / t^2`, so lengths are off by a few `t^3 / det` roundings;
+    /// at right angles only by their own.
+    fn new([xx, yy, zz, xy, xz, yz]: [f64; 6], determinant: f64) -> Self {
+        // Far below any entry that is not lost in rounding: it keeps a root from being 0.
+        let root = |rest: f64, entry: f64| rest.max(f64::EPSILON * entry).sqrt();
+        let x = xx.sqrt();
+        let (yx, zx) = (xy / x, xz / x);
+        let y = root(yy - yx * yx, yy);
+        let zy = (yz - zx * yx) / y;
+        let z = root(zz - zx * zx - zy * zy, zz);
+        let trace = xx + yy + zz;
+        let upright = xy == 0.0 && xz == 0.0 && yz == 0.0;
+        let condition = trace * trace * trace / determinant;
+        Self {
+            x,
+            y: [yx, y],
+            z: [zx, zy, z],
+            error: f64::EPSILON * if upright { 2.0 } else { 32.0 * condition },
+        }
+    }
+
+    #[inline]
+    fn vector_mm<const TILTED: bool>(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        let mut mm = [self.x * x, self.y[1] * y, self.z[2] * z];
+        if TILTED {
+            mm[0] += self.y[0] * y + self.z[0] * z;
+            mm[1] += self.z[1] * z;
+        }
+        mm
+    }
 }
 
 /// The kernel of a set of lattice points.
@@ -100,26 +145,23 @@ impl AnyLattice {
                 limit: SPAN_LIMIT,
             });
         }
-        let (weights, unit) = integer_gram(gram)?;
-        Ok(if weights[3..] == [0, 0, 0] {
-            Self::Upright(LatticeKernel::new(weights, unit, extent))
+        let metric = integer_gram(gram)?;
+        Ok(if metric.weights[3..] == [0, 0, 0] {
+            Self::Upright(LatticeKernel::new(metric, extent))
         } else {
-            Self::Tilted(LatticeKernel::new(weights, unit, extent))
+            Self::Tilted(LatticeKernel::new(metric, extent))
         })
     }
 }
 
 impl<const TILTED: bool> LatticeKernel<TILTED> {
-    fn new(weights: [i64; 6], unit: f64, extent: [i64; 3]) -> Self {
-        let entry = |i: usize| weights[i] as f64 * unit * if i < 3 { 1.0 } else { 0.5 };
-        let entries = [0, 1, 2, 3, 4, 5].map(entry);
+    fn new(metric: Metric, extent: [i64; 3]) -> Self {
         Self {
             range: Range::of(extent),
-            weights,
-            weights_f64: weights.map(|w| w as f64),
-            unit,
-            inverse: inverse(entries),
-            step_mm: [0, 1, 2].map(|i| entries[i].sqrt()),
+            weights: metric.weights,
+            weights_f64: metric.weights.map(|w| w as f64),
+            unit_exponent: metric.unit_exponent,
+            frame: metric.frame,
         }
     }
 
@@ -156,7 +198,7 @@ impl<const TILTED: bool> LatticeKernel<TILTED> {
             size += term.abs();
         }
         // A term carries at most two roundings and the sum five more: 7 units of 2^-53.
-        if sum.abs() > size * (8.0 * circumsphere::ROUNDING) {
+        if sum.abs() > size * (4.0 * f64::EPSILON) {
             return sum > 0.0;
         }
         let exact = d.iter().zip(self.weights).take(terms);
@@ -169,7 +211,9 @@ impl<const TILTED: bool> LatticeKernel<TILTED> {
 }
 
 /// Numbers wide enough for the determinants of a set of points.
-trait Exact: Ring + Default + From<i32> {
+trait Exact:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Default + From<i32>
+{
     fn double(self) -> f64;
     fn long(self) -> i128;
 }
@@ -274,56 +318,21 @@ impl<const TILTED: bool> Kernel for LatticeKernel<TILTED> {
         }
     }
 
-    fn circumsphere(&self, [a, b, c, d]: [&[i32; 3]; 4]) -> Option<Circumsphere> {
-        let edges = [b, c, d].map(|p| difference::<f64>(p, a));
-        let size = |v: [f64; 3], f: fn(f64) -> f64| -> f64 {
-            let terms = PAIRS.iter().zip(self.weights_f64);
-            terms.map(|(&(i, j), g)| f(g * v[i] * v[j])).sum()
-        };
-        let (volume, mut n) = circumsphere::terms(edges, edges.map(|e| size(e, |t| t)));
-        // D and the cross products are integers below 2^48; only N rounds.
-        let longest = edges
-            .map(|e| size(e, f64::abs))
-            .into_iter()
-            .fold(0.0, f64::max);
-        let widest = edges
-            .as_flattened()
-            .iter()
-            .fold(0.0, |m: f64, v| m.max(v.abs()));
-        let error = 64.0 * circumsphere::ROUNDING * longest * widest * widest;
-        let norm = n.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-        if error > circumsphere::GOOD * norm {
-            // Below 2^(41 + 4 * 15 + 7): i128 holds it exactly.
-            let edges = [b, c, d].map(|p| difference::<i128>(p, a));
-            let length = |e: [i128; 3]| -> i128 {
-                let terms = PAIRS.iter().zip(self.weights);
-                terms.map(|(&(i, j), g)| i128::from(g) * e[i] * e[j]).sum()
-            };
-            n = circumsphere::terms(edges, edges.map(length))
-                .1
-                .map(|v| v as f64);
-        }
-        let half = n.map(|v| v * self.unit / (2.0 * volume));
-        let centre = self
-            .inverse
-            .map(|r| r[0] * half[0] + r[1] * half[1] + r[2] * half[2]);
-        let radius_squared = centre[0] * half[0] + centre[1] * half[1] + centre[2] * half[2];
-        let centre = [0, 1, 2].map(|k| f64::from(a[k]) + centre[k]);
-        (volume != 0.0).then_some(Circumsphere {
-            centre,
-            radius_squared,
-        })
+    fn exact_sphere(&self, corners: [&[i32; 3]; 4]) -> ExactSphere {
+        let whole = corners.map(|p| p.map(BigInt::from));
+        ExactSphere::new(whole, self.weights, self.unit_exponent.into(), 0)
     }
 
-    fn number(value: i32) -> f64 {
-        f64::from(value)
+    #[inline]
+    fn difference_mm(&self, a: &[i32; 3], b: &[i32; 3]) -> [f64; 3] {
+        self.frame.vector_mm::<TILTED>(difference(a, b))
     }
 
-    fn step_mm(&self) -> [f64; 3] {
-        self.step_mm
+    fn difference_error(&self) -> f64 {
+        self.frame.error
     }
 
-    fn reach(&self, axis: usize, radius_mm: f64) -> f64 {
-        radius_mm * self.inverse[axis][axis].sqrt()
+    fn vector_mm(&self, vector: [f64; 3]) -> [f64; 3] {
+        self.frame.vector_mm::<TILTED>(vector)
     }
 }

@@ -1,13 +1,13 @@
 //! Exact decisions about points, by two kernels: integer lattices and free doubles.
 //!
 //! Everything above this module asks only the questions of [`Kernel`]; none of it computes with
-//! coordinates. All answers are exact, except for [`Kernel::circumsphere`], which is certified.
+//! coordinates. All answers are exact but the differences in mm, whose error is known.
 
-mod circumsphere;
+mod exact_sphere;
 mod free;
 mod lattice;
 
-pub(crate) use circumsphere::Circumsphere;
+pub(crate) use exact_sphere::ExactSphere;
 pub(crate) use free::FreeKernel;
 pub(crate) use lattice::{AnyLattice, LatticeKernel};
 
@@ -37,17 +37,23 @@ pub(crate) trait Kernel: Sync {
     /// settled by the perturbed lift, see [`settle_tie`].
     fn in_conflict(&self, cell: [&Site<Self::Scalar>; 4], query: &Site<Self::Scalar>) -> bool;
 
-    /// The sphere through four points, or `None` where they are too flat for it to be certain.
-    fn circumsphere(&self, corners: [&[Self::Scalar; 3]; 4]) -> Option<Circumsphere>;
+    /// The sphere through four points that span space.
+    fn exact_sphere(&self, corners: [&[Self::Scalar; 3]; 4]) -> ExactSphere;
 
-    /// A coordinate as a double.
-    fn number(value: Self::Scalar) -> f64;
+    /// The vector from `b` to `a` in mm along three fixed axes at right angles.
+    fn difference_mm(&self, a: &[Self::Scalar; 3], b: &[Self::Scalar; 3]) -> [f64; 3];
 
-    /// About how long one step along each axis is, in mm.
-    fn step_mm(&self) -> [f64; 3];
+    /// Error of [`Kernel::difference_mm`] as a part of the vector's length.
+    fn difference_error(&self) -> f64;
 
-    /// How far a ball of `radius_mm` reaches from its centre along an axis, in coordinates.
-    fn reach(&self, axis: usize, radius_mm: f64) -> f64;
+    /// A vector in coordinates along the axes of [`Kernel::difference_mm`].
+    fn vector_mm(&self, vector: [f64; 3]) -> [f64; 3];
+
+    /// A point's place in mm.
+    #[inline]
+    fn place_mm(&self, at: &[Self::Scalar; 3]) -> [f64; 3] {
+        self.difference_mm(at, &[Self::Scalar::default(); 3])
+    }
 }
 
 /// Settles a query that lies exactly on the circumsphere: is it inside?

@@ -1,0 +1,166 @@
+//! Which cells of a slab's triangulation belong to the alpha complex.
+//!
+//! A cell is kept where its circumradius is at most alpha, by the slab that holds its
+//! circumcentre. Its sphere in doubles decides where that is beyond doubt; whole numbers decide
+//! the rest, so that every slab that sees a cell decides alike, and cospherical cells stay
+//! together.
+
+use crate::predicates::{Kernel, Site};
+use crate::slabs::Slabs;
+use crate::triangulation::{Cell, Triangulation};
+
+/// What becomes of a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Fate {
+    /// Not in the complex, or not even a cell.
+    Dropped,
+    /// Kept by another slab, if it is a cell of the whole triangulation at all.
+    Foreign,
+    Kept,
+}
+
+/// A slab's triangulation and the fates of its cells.
+pub(crate) struct Kept<'t, 'k, K: Kernel> {
+    triangulation: &'t Triangulation<'k, K>,
+    fates: Vec<Fate>,
+}
+
+impl<'t, 'k, K: Kernel> Kept<'t, 'k, K> {
+    /// Decides for every cell that `slab` found.
+    pub(crate) fn new(
+        triangulation: &'t Triangulation<'k, K>,
+        alpha: f64,
+        slabs: &Slabs,
+        slab: usize,
+    ) -> Self {
+        let judge = Judge {
+            triangulation,
+            alpha,
+            alpha_squared: alpha * alpha,
+            slabs,
+            slab,
+        };
+        let fates = triangulation.cells.iter().map(|cell| judge.fate(cell));
+        Self {
+            fates: fates.collect(),
+            triangulation,
+        }
+    }
+
+    fn cells(&self) -> impl Iterator<Item = &'t Cell> {
+        let cells = self.triangulation.cells.iter().zip(&self.fates);
+        cells
+            .filter(|(_, f)| **f == Fate::Kept)
+            .map(|(cell, _)| cell)
+    }
+
+    /// How many cells are kept.
+    pub(crate) fn count(&self) -> usize {
+        self.cells().count()
+    }
+
+    /// The kept cells' ranks, see [`canonical`].
+    pub(crate) fn ranks(&self) -> Vec<[u32; 4]> {
+        let t = self.triangulation;
+        self.cells().map(|c| canonical(t.cell_sites(c)).0).collect()
+    }
+
+    /// Facets, outward and as ranks, of kept cells without a kept one beyond.
+    ///
+    /// Next to a cut the cell beyond may be another slab's; that slab then has the same facet
+    /// from the other side, and the two cancel. Deep in the slab every cell is known.
+    pub(crate) fn facets(&self, slabs: &Slabs, slab: usize) -> Vec<[u32; 3]> {
+        let t = self.triangulation;
+        let mut facets = Vec::new();
+        for cell in self.cells() {
+            for (across, facet) in cell.neighbours.iter().zip(outward(cell.vertices)) {
+                let beyond = self.fates[(across >> 2) as usize];
+                if beyond == Fate::Kept {
+                    continue;
+                }
+                let sites = facet.map(|v| &t.sites[v as usize]);
+                let is_inner =
+                    beyond == Fate::Foreign && slabs.is_deep(slab, t.kernel.place_mm(&sites[0].at));
+                if !is_inner {
+                    facets.push(sites.map(|s| s.rank));
+                }
+            }
+        }
+        facets
+    }
+}
+
+/// What it takes to decide a cell's fate.
+struct Judge<'a, 'k, K: Kernel> {
+    triangulation: &'a Triangulation<'k, K>,
+    alpha: f64,
+    alpha_squared: f64,
+    slabs: &'a Slabs,
+    slab: usize,
+}
+
+impl<K: Kernel> Judge<'_, '_, K> {
+    fn fate(&self, cell: &Cell) -> Fate {
+        if !cell.is_finite() {
+            return Fate::Dropped;
+        }
+        let (sphere, precision) = (&cell.sphere, &self.triangulation.precision);
+        let slack = self.alpha_squared * precision.tolerance;
+        if sphere.radius_squared > self.alpha_squared + slack {
+            return Fate::Dropped;
+        }
+        if sphere.radius_squared < self.alpha_squared - slack {
+            let reach = self.alpha * precision.tolerance + 4.0 * precision.place;
+            if let Some(owner) = self.slabs.only_owner(sphere.centre, reach) {
+                return self.of_owner(owner);
+            }
+        }
+        self.exact_fate(cell)
+    }
+
+    fn of_owner(&self, owner: usize) -> Fate {
+        if owner == self.slab {
+            Fate::Kept
+        } else {
+            Fate::Foreign
+        }
+    }
+
+    /// Whoever asks gets the same answer: nothing is rounded but the centre, from one order of
+    /// the sites.
+    fn exact_fate(&self, cell: &Cell) -> Fate {
+        let kernel = self.triangulation.kernel;
+        let (_, sites) = canonical(self.triangulation.cell_sites(cell));
+        let sphere = kernel.exact_sphere(sites.each_ref().map(|s| &s.at));
+        if !sphere.radius_is_at_most(self.alpha) {
+            return Fate::Dropped;
+        }
+        let corner = kernel.place_mm(&sites[0].at);
+        let to_centre = kernel.vector_mm(sphere.centre());
+        let centre = [0, 1, 2].map(|k| corner[k] + to_centre[k]);
+        self.of_owner(self.slabs.owner(centre))
+    }
+}
+
+/// The facets of a positive cell, outward, each opposite the vertex of its place.
+#[inline]
+pub(crate) fn outward([a, b, c, d]: [u32; 4]) -> [[u32; 3]; 4] {
+    [[b, c, d], [a, d, c], [a, b, d], [a, c, b]]
+}
+
+/// A positively oriented cell as ranks: ascending, the last two swapped if orientation asks for
+/// it; and its sites, ascending.
+pub(crate) fn canonical<S: Copy>(mut cell: [Site<S>; 4]) -> ([u32; 4], [Site<S>; 4]) {
+    let mut even = true;
+    for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
+        if cell[i].rank > cell[j].rank {
+            cell.swap(i, j);
+            even = !even;
+        }
+    }
+    let mut ranks = cell.map(|s| s.rank);
+    if !even {
+        ranks.swap(2, 3);
+    }
+    (ranks, cell)
+}
