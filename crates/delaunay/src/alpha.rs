@@ -33,7 +33,7 @@ macro_rules! for_any_sites {
 pub fn tetrahedralize(points: Points<'_>, task: &Task) -> Result<Tetrahedra, DelaunayError> {
     fn all<K: Kernel>(sites: &Sites<K>, task: &Task) -> Result<Tetrahedra, DelaunayError> {
         task.begin("tetrahedra", sites.sorted.len());
-        let cells = match Triangulation::build(sites, &sites.sorted, task)? {
+        let cells = match Triangulation::build(sites, &sites.sorted, Vec::new(), task)? {
             Some(t) => t
                 .finite_cells()
                 .map(|cell| canonical(t.cell_sites(cell)).0)

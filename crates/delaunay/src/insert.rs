@@ -59,7 +59,7 @@ struct Glance {
 impl<K: Kernel> Triangulation<'_, K> {
     /// Inserts `vertex`, which equals none before it; the number of new cells.
     pub(crate) fn insert(&mut self, vertex: u32, cavity: &mut Cavity) -> usize {
-        let site = self.sites[vertex as usize];
+        let site = self.vertices[vertex as usize].site;
         let start = self.locate(&site);
         let newcomer = Newcomer {
             vertex,
@@ -123,10 +123,12 @@ impl<K: Kernel> Triangulation<'_, K> {
             return;
         }
         let facet = glance.facet & 3;
-        let mut vertices = self.cells[(glance.facet >> 2) as usize].vertices;
-        vertices[facet as usize] = newcomer.vertex;
+        let [a, b, c, d] = self.cells[(glance.facet >> 2) as usize].vertices;
+        // Chosen one by one: to change one of four in memory and copy the four would wait for
+        // the change.
+        let vertex = |k: u32, old: u32| if k == facet { newcomer.vertex } else { old };
         cavity.rim.push(RimFacet {
-            vertices,
+            vertices: [vertex(0, a), vertex(1, b), vertex(2, c), vertex(3, d)],
             facet,
             across: glance.across,
             numbers: [0; 3],
@@ -151,7 +153,7 @@ impl<K: Kernel> Triangulation<'_, K> {
             }
             cell = &self.cells[(cell.neighbours[g] >> 2) as usize];
         }
-        let corners = cell.vertices.map(|v| &self.sites[v as usize]);
+        let corners = cell.vertices.map(|v| &self.vertices[v as usize].site);
         self.kernel.in_conflict(corners, query)
     }
 }

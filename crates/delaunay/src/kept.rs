@@ -78,7 +78,7 @@ impl<'t, 'k, K: Kernel> Kept<'t, 'k, K> {
                 if beyond == Fate::Kept {
                     continue;
                 }
-                let sites = facet.map(|v| &t.sites[v as usize]);
+                let sites = facet.map(|v| &t.vertices[v as usize].site);
                 let is_inner =
                     beyond == Fate::Foreign && slabs.is_deep(slab, t.kernel.place_mm(&sites[0].at));
                 if !is_inner {

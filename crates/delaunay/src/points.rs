@@ -105,13 +105,13 @@ impl AnySites {
                 let kernel = AnyLattice::new(gram, extent)?;
                 let sorted = sorted_lattice(coordinates, low);
                 Ok(match kernel {
-                    AnyLattice::Upright(k) => Self::Upright(Sites::new(k, sorted, points)?),
-                    AnyLattice::Tilted(k) => Self::Tilted(Sites::new(k, sorted, points)?),
+                    AnyLattice::Upright(k) => Self::Upright(Sites::new(k, &sorted, points)?),
+                    AnyLattice::Tilted(k) => Self::Tilted(Sites::new(k, &sorted, points)?),
                 })
             }
             Points::Free(free) => {
                 let sorted = sorted_free(free)?;
-                Ok(Self::Free(Sites::new(FreeKernel, sorted, points)?))
+                Ok(Self::Free(Sites::new(FreeKernel, &sorted, points)?))
             }
         }
     }
@@ -150,7 +150,10 @@ fn sorted_lattice(coordinates: &[[i32; 3]], low: [i32; 3]) -> Sorted<i32> {
     keys.dedup_by_key(|(key, _)| *key);
     let coordinate = |key: u64, shift: u32| (key >> shift & 0x7fff) as i32;
     keys.into_par_iter()
-        .map(|(key, i)| ([0, 15, 30].map(|shift| coordinate(key, shift)), i))
+        .map(|(key, i)| {
+            let [x, y, z] = [coordinate(key, 0), coordinate(key, 15), coordinate(key, 30)];
+            ([x, y, z], i)
+        })
         .collect()
 }
 
@@ -178,7 +181,7 @@ fn sorted_free(points: &[[f64; 3]]) -> Result<Sorted<f64>, DelaunayError> {
 impl<K: Kernel> Sites<K> {
     fn new(
         kernel: K,
-        sorted: Sorted<K::Scalar>,
+        sorted: &[([K::Scalar; 3], u32)],
         points: Points<'_>,
     ) -> Result<Self, DelaunayError> {
         let distinct = sorted.len();
@@ -191,12 +194,10 @@ impl<K: Kernel> Sites<K> {
             Span::Plane => return Err(DelaunayError::Coplanar { distinct }),
             Span::Line | Span::Point => return Err(DelaunayError::Collinear { distinct }),
         }
-        let (sorted, input) = sorted
-            .into_iter()
-            .zip(0..)
-            .map(|((at, input), rank)| (Site { at, rank }, input))
-            .unzip();
-        let sorted: Vec<Site<K::Scalar>> = sorted;
+        let input = sorted.par_iter().map(|&(_, input)| input).collect();
+        let ranked = sorted.par_iter().zip(0u32..distinct as u32);
+        let sorted: Vec<Site<K::Scalar>> =
+            ranked.map(|(&(at, _), rank)| Site { at, rank }).collect();
         let bounds = Bounds::of(sorted.iter().map(|s| kernel.place_mm(&s.at)));
         Ok(Self {
             precision: Precision::new(kernel.difference_error(), bounds.largest()),

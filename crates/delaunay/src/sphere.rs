@@ -94,7 +94,7 @@ impl Precision {
     /// The spheres through `corner` (mm) and the ends of three arms each.
     // Spelled out, since closures over the three axes are not always inlined.
     #[inline(never)]
-    pub(crate) fn spheres(&self, corner: [f64; 3], arms: &[[&Arm; 3]; LANES]) -> [Sphere; LANES] {
+    pub(crate) fn spheres(&self, corner: [f64; 3], arms: &[[&Arm; 3]; LANES]) -> Spheres {
         let lane = |arm: usize, k: usize| Lane(std::array::from_fn(|i| arms[i][arm][k]));
         let u = [lane(0, 0), lane(0, 1), lane(0, 2)];
         let v = [lane(1, 0), lane(1, 1), lane(1, 2)];
@@ -109,15 +109,43 @@ impl Precision {
         let radius_squared = x * x + y * y + z * z;
         let longest = lu.largest(lv).largest(lw);
         let (solid, cube) = (d * d, longest * longest * longest);
-        std::array::from_fn(|i| {
-            let good = solid.0[i] >= FLAT * FLAT * cube.0[i]
+        let known = |i: usize| {
+            solid.0[i] >= FLAT * FLAT * cube.0[i]
                 && radius_squared.0[i] >= self.least_radius_squared
-                && SIZES.contains(&longest.0[i]);
-            Sphere {
-                centre: [corner[0] + x.0[i], corner[1] + y.0[i], corner[2] + z.0[i]],
-                radius_squared: if good { radius_squared.0[i] } else { f64::NAN },
-            }
-        })
+                && SIZES.contains(&longest.0[i])
+        };
+        let centre = |c: Lane, k: usize| c.0.map(|offset| corner[k] + offset);
+        Spheres {
+            x: centre(x, 0),
+            y: centre(y, 1),
+            z: centre(z, 2),
+            radius_squared: std::array::from_fn(|i| {
+                if known(i) {
+                    radius_squared.0[i]
+                } else {
+                    f64::NAN
+                }
+            }),
+        }
+    }
+}
+
+/// Spheres side by side. Number by number they are stored and read without waiting, which
+/// copies of whole spheres are not.
+pub(crate) struct Spheres {
+    x: [f64; LANES],
+    y: [f64; LANES],
+    z: [f64; LANES],
+    radius_squared: [f64; LANES],
+}
+
+impl Spheres {
+    #[inline]
+    pub(crate) fn get(&self, lane: usize) -> Sphere {
+        Sphere {
+            centre: [self.x[lane], self.y[lane], self.z[lane]],
+            radius_squared: self.radius_squared[lane],
+        }
     }
 }
 
@@ -182,7 +210,7 @@ mod tests {
     fn sphere_of(precision: &Precision, corners: [[f64; 3]; 4]) -> Sphere {
         let [p, u, v, w] = corners;
         let arms = [u, v, w].map(|q| arm([0, 1, 2].map(|k| q[k] - p[k])));
-        precision.spheres(p, &[arms.each_ref(); LANES])[0]
+        precision.spheres(p, &[arms.each_ref(); LANES]).get(0)
     }
 
     #[test]

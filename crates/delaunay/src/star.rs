@@ -3,7 +3,7 @@
 use crate::insert::{Cavity, RimFacet};
 use crate::predicates::{Kernel, Site};
 use crate::sphere::{Arm, LANES, Sphere, arm};
-use crate::triangulation::{Cell, GHOST, Triangulation, UNUSED};
+use crate::triangulation::{Cell, GHOST, Triangulation, UNUSED, Vertex};
 
 /// Vertices on the rim up to which edges are matched in a table: 98 of 100 rims.
 const TABLE_SIDE: usize = 32;
@@ -15,8 +15,6 @@ const EMPTY: u32 = u32::MAX;
 pub(crate) struct Edges {
     /// Which insertion this is.
     round: u32,
-    /// The insertion in which a vertex was last on the rim, and its number there.
-    numbers: Vec<(u32, u32)>,
     /// From the new point to each vertex of the rim, by number.
     arms: Vec<Arm>,
     /// Square over numbers, all [`EMPTY`] between insertions.
@@ -26,22 +24,10 @@ pub(crate) struct Edges {
 }
 
 impl Edges {
-    fn begin(&mut self, vertices: usize) {
-        self.numbers.resize(vertices, (0, 0));
+    fn begin(&mut self) {
         self.table.resize(TABLE_SIDE * TABLE_SIDE, EMPTY);
         self.arms.clear();
         self.round += 1;
-    }
-
-    /// The vertex's number on the rim; `arm` is asked for at its first appearance.
-    #[inline]
-    fn number(&mut self, vertex: u32, arm: impl FnOnce() -> Arm) -> u32 {
-        let entry = &mut self.numbers[vertex as usize];
-        if entry.0 != self.round {
-            *entry = (self.round, self.arms.len() as u32);
-            self.arms.push(arm());
-        }
-        entry.1
     }
 }
 
@@ -56,7 +42,7 @@ impl<K: Kernel> Triangulation<'_, K> {
         place_mm: [f64; 3],
         cavity: &mut Cavity,
     ) {
-        cavity.edges.begin(self.sites.len());
+        cavity.edges.begin();
         cavity.slots.clear();
         // The rim is a sphere: v - e + f = 2 with 2 e = 3 f.
         let small = cavity.rim.len() / 2 + 2 <= TABLE_SIDE;
@@ -71,7 +57,7 @@ impl<K: Kernel> Triangulation<'_, K> {
             let beside = BESIDE[(rim.facet & 3) as usize];
             for (number, k) in rim.numbers.iter_mut().zip(beside) {
                 let vertex = rim.vertices[k];
-                *number = cavity.edges.number(vertex, || self.arm_to(vertex, site));
+                *number = self.number(vertex, site, &mut cavity.edges);
             }
             self.link(slot, rim, small, &mut cavity.edges);
         }
@@ -100,15 +86,20 @@ impl<K: Kernel> Triangulation<'_, K> {
         })
     }
 
-    /// The ghost has no arm, and so no sphere.
+    /// The vertex's number on the rim; its arm is found at its first appearance.
     #[inline]
-    fn arm_to(&self, vertex: u32, site: &Site<K::Scalar>) -> Arm {
-        if vertex == GHOST {
-            return [f64::NAN; 4];
+    fn number(&mut self, vertex: u32, from: &Site<K::Scalar>, edges: &mut Edges) -> u32 {
+        let Vertex { site, on_rim } = &mut self.vertices[vertex as usize];
+        if on_rim.0 != edges.round {
+            *on_rim = (edges.round, edges.arms.len() as u32);
+            // The ghost has no arm, and so no sphere.
+            edges.arms.push(if vertex == GHOST {
+                [f64::NAN; 4]
+            } else {
+                arm(self.kernel.difference_mm(&site.at, &from.at))
+            });
         }
-        arm(self
-            .kernel
-            .difference_mm(&self.sites[vertex as usize].at, &site.at))
+        on_rim.1
     }
 
     #[inline]
@@ -133,13 +124,15 @@ impl<K: Kernel> Triangulation<'_, K> {
                 continue;
             }
             let place = &mut edges.table[low as usize * TABLE_SIDE + high as usize];
-            if *place == EMPTY {
-                *place = this;
-            } else {
-                // Each edge of the rim comes exactly twice, which leaves the table empty.
-                let mate = std::mem::replace(place, EMPTY);
-                self.join(this, mate);
-            }
+            // Each edge of the rim comes exactly twice, which leaves the table empty. The first
+            // time the facet is joined to nothing: no branch, since which time it is cannot be
+            // foreseen.
+            let mate = *place;
+            let is_first = mate == EMPTY;
+            *place = if is_first { this } else { EMPTY };
+            let other = if is_first { this } else { mate };
+            self.cells[(other >> 2) as usize].neighbours[(other & 3) as usize] = this;
+            self.cells[(this >> 2) as usize].neighbours[(this & 3) as usize] = mate;
         }
     }
 
@@ -168,8 +161,8 @@ impl<K: Kernel> Triangulation<'_, K> {
                 [&arms[a as usize], &arms[b as usize], &arms[c as usize]]
             });
             let spheres = self.precision.spheres(place_mm, &facets_arms);
-            for (&slot, sphere) in slots.iter().zip(spheres) {
-                self.cells[slot as usize].sphere = sphere;
+            for (lane, &slot) in slots.iter().enumerate() {
+                self.cells[slot as usize].sphere = spheres.get(lane);
             }
         }
     }

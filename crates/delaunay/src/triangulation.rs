@@ -67,11 +67,20 @@ impl Cell {
     }
 }
 
-/// A growing Delaunay triangulation of `sites`, numbered in the order of insertion from 1.
+/// A point of the triangulation.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Vertex<S> {
+    pub(crate) site: Site<S>,
+    /// The insertion in which it was last on the rim, and its number there. Beside the place,
+    /// since both are asked for together.
+    pub(crate) on_rim: (u32, u32),
+}
+
+/// A growing Delaunay triangulation of points, numbered in the order of insertion from 1.
 pub(crate) struct Triangulation<'k, K: Kernel> {
     pub(crate) kernel: &'k K,
     /// The points; the first is a stand-in for the ghost and never looked at.
-    pub(crate) sites: Vec<Site<K::Scalar>>,
+    pub(crate) vertices: Vec<Vertex<K::Scalar>>,
     pub(crate) cells: Vec<Cell>,
     pub(crate) precision: Precision,
     /// Cells not in use.
@@ -119,39 +128,52 @@ where
 
 impl<'k, K: Kernel> Triangulation<'k, K> {
     /// The Delaunay triangulation of `points`, some of `of`, or `None` where they span no space.
+    ///
+    /// `room` is any list whose memory may be used for the cells.
     pub(crate) fn build(
         of: &'k Sites<K>,
         points: &[Site<K::Scalar>],
+        mut room: Vec<Cell>,
         task: &Task,
     ) -> Result<Option<Self>, DelaunayError> {
         let kernel = &of.kernel;
         let order = insertion_order(points.iter().map(|s| kernel.place_mm(&s.at)));
-        let mut sites: Vec<Site<K::Scalar>> = order.iter().map(|&i| points[i as usize]).collect();
-        let Span::Space(first) = span(kernel, sites.iter().map(|s| &s.at)) else {
+        // The ghost comes first; its site is never looked at.
+        let ghost = Site {
+            at: [K::Scalar::default(); 3],
+            rank: u32::MAX,
+        };
+        let inserted = order.iter().map(|&i| points[i as usize]);
+        let vertices = std::iter::once(ghost).chain(inserted).map(|site| Vertex {
+            site,
+            on_rim: (0, 0),
+        });
+        let mut vertices: Vec<Vertex<K::Scalar>> = vertices.collect();
+        let Span::Space(first) = span(kernel, vertices[1..].iter().map(|v| &v.site.at)) else {
             return Ok(None);
         };
         // The four go to the front (swapping keeps the others on the curve, but for a few).
         for (to, from) in first.into_iter().enumerate() {
-            sites.swap(to, from);
+            vertices.swap(to + 1, from + 1);
         }
-        sites.insert(
-            0,
-            Site {
-                at: [K::Scalar::default(); 3],
-                rank: u32::MAX,
-            },
-        );
+        room.clear();
+        room.reserve(CELLS_PER_POINT * vertices.len());
         let mut triangulation = Self {
             kernel,
-            cells: Vec::with_capacity(CELLS_PER_POINT * sites.len()),
+            cells: room,
             precision: of.precision,
-            sites,
+            vertices,
             unused: Vec::new(),
             recent: 0,
         };
         triangulation.start();
         triangulation.insert_rest(task)?;
         Ok(Some(triangulation))
+    }
+
+    /// The memory of its cells, for the next triangulation.
+    pub(crate) fn into_room(self) -> Vec<Cell> {
+        self.cells
     }
 
     /// The tetrahedron of the first four points and the four infinite cells around it.
@@ -208,14 +230,14 @@ impl<'k, K: Kernel> Triangulation<'k, K> {
     fn insert_rest(&mut self, task: &Task) -> Result<(), DelaunayError> {
         let mut cavity = Cavity::default();
         let (mut inserted, mut made) = (4, 0);
-        for vertex in 5..self.sites.len() as u32 {
+        for vertex in 5..self.vertices.len() as u32 {
             made += self.insert(vertex, &mut cavity);
             inserted += 1;
             if made >= CELLS_PER_CHECK {
                 task.advance(inserted)?;
                 (inserted, made) = (0, 0);
                 if self.cells.len() > CELL_LIMIT - CELLS_PER_CHECK {
-                    let points = self.sites.len() - 1;
+                    let points = self.vertices.len() - 1;
                     return Err(DelaunayError::TooMany {
                         points,
                         limit: CELL_LIMIT,
@@ -229,13 +251,13 @@ impl<'k, K: Kernel> Triangulation<'k, K> {
     /// Coordinates of four finite vertices.
     #[inline]
     pub(crate) fn corners(&self, vertices: [u32; 4]) -> [&[K::Scalar; 3]; 4] {
-        vertices.map(|v| &self.sites[v as usize].at)
+        vertices.map(|v| &self.vertices[v as usize].site.at)
     }
 
     /// The sites of a finite cell.
     #[inline]
     pub(crate) fn cell_sites(&self, cell: &Cell) -> [Site<K::Scalar>; 4] {
-        cell.vertices.map(|v| self.sites[v as usize])
+        cell.vertices.map(|v| self.vertices[v as usize].site)
     }
 
     /// The finite cells.
