@@ -151,7 +151,6 @@ fn cloud_to_mesh(
     let boundary = alpha_boundary(cloud, alpha_mm, task)?;
     seconds.tetrahedra = lap(&mut clock);
     let surface = boundary_surface(cloud, boundary, task)?;
-    drop(cells);
     let topology = check(&surface.mesh, task)?;
     seconds.surface = lap(&mut clock);
     seconds.total =

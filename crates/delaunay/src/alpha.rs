@@ -4,11 +4,11 @@ use bonemesh_task::Task;
 use rayon::prelude::*;
 
 use crate::boundary::single_facets_sorted;
-use crate::kept::{Kept, canonical};
+use crate::kept::Kept;
+use crate::pieces::whole;
 use crate::points::{AnySites, Points, Sites};
 use crate::predicates::Kernel;
 use crate::slabs::Slabs;
-use crate::triangulation::Triangulation;
 use crate::{AlphaBoundary, DelaunayError, Tetrahedra};
 
 /// Calls a function of the sites, whatever their kind.
@@ -32,14 +32,7 @@ macro_rules! for_any_sites {
 /// Every [`DelaunayError`] but [`DelaunayError::Alpha`].
 pub fn tetrahedralize(points: Points<'_>, task: &Task) -> Result<Tetrahedra, DelaunayError> {
     fn all<K: Kernel>(sites: &Sites<K>, task: &Task) -> Result<Tetrahedra, DelaunayError> {
-        task.begin("tetrahedra", sites.sorted.len());
-        let cells = match Triangulation::build(sites, &sites.sorted, Vec::new(), task)? {
-            Some(t) => t
-                .finite_cells()
-                .map(|cell| canonical(t.cell_sites(cell)).0)
-                .collect(),
-            None => Vec::new(),
-        };
+        let cells = whole(sites, task)?;
         Ok(numbered(cells, sites))
     }
     for_any_sites!(points, sites => all(&sites, task))

@@ -13,8 +13,8 @@
 //!
 //! Limits: at most 2^30 tetrahedra at a time; lattice coordinates span at most 32,767 steps
 //! along an axis and their metric is rounded to `2^-40` of its largest entry; free coordinates
-//! are 0 or between 1e-45 and 1e55 in size. A whole triangulation is built by one thread, an
-//! alpha complex by as many as it has slabs.
+//! are 0 or between 1e-45 and 1e55 in size. There are as many threads at work as an alpha complex
+//! has slabs and a whole triangulation pieces; flat or small sets have one.
 //!
 //! ```
 //! use bonemesh_delaunay::{Points, alpha_complex, tetrahedralize};
@@ -37,8 +37,8 @@
 //! # How it works
 //! 1. `points`: distinct points are sorted by z, y, x; a point's place is its rank.
 //! 2. `slabs`: space is cut across its longest extent; each slab takes the points within alpha
-//!    of it, which makes it right about every cell that it will keep. (`tetrahedralize` has one
-//!    slab.)
+//!    of it, which makes it right about every cell that it will keep. Without alpha, `pieces`
+//!    are triangulated with their own points only, and joined along their borders.
 //! 3. `hilbert`: points are put in random rounds, each in the order of a Hilbert curve.
 //! 4. `locate`: from the last cell, walk to the cell that holds the next point.
 //! 5. `insert`: the cells whose circumsphere has the point inside give way, and `star` joins the
@@ -62,6 +62,8 @@
 //!   predicates*, 1997.
 //! - N. Amenta, S. Choi, G. Rote, *Incremental constructions con BRIO*, 2003; C. H. Hamilton,
 //!   *Compact Hilbert indices*, 2006.
+//! - D. Funke, P. Sanders, *Parallel d-D Delaunay triangulations in shared and distributed
+//!   memory*, 2017.
 //! - C. Marot, J. Pellerin, J.-F. Remacle, *One machine, one minute, three billion tetrahedra*,
 //!   2019.
 
@@ -72,6 +74,7 @@ mod hilbert;
 mod insert;
 mod kept;
 mod locate;
+mod pieces;
 mod points;
 mod predicates;
 mod slabs;

@@ -74,6 +74,13 @@ impl Slabs {
         Self { axis, cuts, margin }
     }
 
+    /// `count` slabs whose points are their own.
+    pub(crate) fn without_margin<K: Kernel>(sites: &Sites<K>, count: usize) -> Self {
+        let mut slabs = Self::with_count(sites, f64::INFINITY, count);
+        slabs.margin = 0.0;
+        slabs
+    }
+
     /// How many slabs there are.
     pub(crate) fn len(&self) -> usize {
         self.cuts.len() + 1

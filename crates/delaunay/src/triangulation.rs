@@ -50,10 +50,15 @@ impl Cell {
         a.min(b).min(c.min(d)) == GHOST
     }
 
+    #[inline]
+    pub(crate) fn is_in_use(&self) -> bool {
+        self.vertices[0] != UNUSED
+    }
+
     /// Whether the cell is in use and has no ghost.
     #[inline]
     pub(crate) fn is_finite(&self) -> bool {
-        self.vertices[0] != UNUSED && !self.is_infinite()
+        self.is_in_use() && !self.is_infinite()
     }
 
     /// The place of the ghost among the vertices, if the cell is infinite.
