@@ -52,6 +52,27 @@
 //! 8. `kept`: cells are kept by circumradius, and facets without a kept cell beyond are the
 //!    boundary; `alpha` puts cells and facets in order and names them by the input's indices.
 //!
+//! # What was tried
+//! On the edges of a skull (592,212 points, alpha 2.4 mm) or random points, one thread's work,
+//! before and after; the machine's own noise is about 0.05.
+//!
+//! | idea | gain |
+//! |---|---|
+//! | a certified sphere in each cell, four made at a time | kept: 1.2 |
+//! | loops spelled out where closures over arrays were not inlined | kept: 1.4 |
+//! | rim vertices numbered densely, edges matched in a table of 32 x 32 without branches | kept: 1.1 |
+//! | numbers chosen in registers, not changed in memory and copied at once | kept: 1.05 |
+//! | the boundary from each slab, without a sorted list of tetrahedra | kept: 1.2 |
+//! | memory of cells passed from slab to slab | kept: 1.04 |
+//! | place on the curve and index in one word | kept: 1.03 |
+//! | 16 slabs, or 64, in place of 4 (smaller sets, more margin) | dropped: 0.8, 0.5 |
+//! | neighbours looked at when a cell enters the queue, not when it leaves | dropped: 0.97 |
+//! | rounds by parity of slices or of pixels | dropped: 0.5 to 1.0 |
+//! | rounds eight times the one before, in place of four | dropped: 1.0 |
+//! | boundary facets in bins, not sorted | dropped: 0.95 |
+//! | AVX2, fat link-time optimisation, one codegen unit | dropped: 1.0 |
+//! | huge pages | not ours to set: 1.05 |
+//!
 //! # References
 //! - A. Bowyer, *Computing Dirichlet tessellations*, 1981; D. F. Watson, *Computing the
 //!   n-dimensional Delaunay tessellation*, 1981.
