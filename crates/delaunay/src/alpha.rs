@@ -58,8 +58,7 @@ pub fn alpha_complex(
     ) -> Result<Tetrahedra, DelaunayError> {
         let slabs = Slabs::plan(sites, alpha);
         let cells = slabs.triangulate(sites, task, |slab, found| {
-            let kept = Kept::new(found, alpha, &slabs, slab);
-            task.check()?;
+            let kept = Kept::new(found, alpha, &slabs, slab, task)?;
             Ok(kept.ranks())
         })?;
         Ok(numbered(cells.concat(), sites))
@@ -91,8 +90,7 @@ pub fn alpha_boundary(
     ) -> Result<AlphaBoundary, DelaunayError> {
         let slabs = Slabs::plan(sites, alpha);
         let found = slabs.triangulate(sites, task, |slab, found| {
-            let kept = Kept::new(found, alpha, &slabs, slab);
-            task.check()?;
+            let kept = Kept::new(found, alpha, &slabs, slab, task)?;
             Ok((kept.count(), kept.facets(&slabs, slab)))
         })?;
         let facets = found.par_iter().flat_map_iter(|(_, facets)| facets);

@@ -39,15 +39,15 @@ impl Tetrahedra {
         single_facets(&self.cells, largest as usize + 1, task)
     }
 
-    /// The cells' total volume in mm^3: exact on a lattice but for one last rounding.
+    /// The cells' total volume in mm^3: summed exactly on a lattice.
     pub fn volume_mm3(&self, points: Points<'_>) -> f64 {
         volume_mm3(self.cells.par_iter().copied(), points)
     }
 }
 
 impl AlphaBoundary {
-    /// The volume in mm^3 that the triangles enclose, which is that of the tetrahedra: exact on
-    /// a lattice but for one last rounding.
+    /// The volume in mm^3 that the triangles enclose, which is that of the tetrahedra: summed
+    /// exactly on a lattice.
     pub fn volume_mm3(&self, points: Points<'_>) -> f64 {
         // The cones from one of the points to all triangles.
         let Some(&[apex, ..]) = self.triangles.first() else {

@@ -5,9 +5,14 @@
 //! the rest, so that every slab that sees a cell decides alike, and cospherical cells stay
 //! together.
 
+use bonemesh_task::{Cancelled, Task};
+
 use crate::predicates::{Kernel, Site};
 use crate::slabs::Slabs;
 use crate::triangulation::{Cell, Triangulation};
+
+/// Cells judged between two looks at the cancel switch: some ten milliseconds at worst.
+const CELLS_PER_CHECK: usize = 1 << 12;
 
 /// What becomes of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +37,8 @@ impl<'t, 'k, K: Kernel> Kept<'t, 'k, K> {
         alpha: f64,
         slabs: &Slabs,
         slab: usize,
-    ) -> Self {
+        task: &Task,
+    ) -> Result<Self, Cancelled> {
         let judge = Judge {
             triangulation,
             alpha,
@@ -40,11 +46,15 @@ impl<'t, 'k, K: Kernel> Kept<'t, 'k, K> {
             slabs,
             slab,
         };
-        let fates = triangulation.cells.iter().map(|cell| judge.fate(cell));
-        Self {
-            fates: fates.collect(),
-            triangulation,
+        let mut fates = Vec::with_capacity(triangulation.cells.len());
+        for cells in triangulation.cells.chunks(CELLS_PER_CHECK) {
+            task.check()?;
+            fates.extend(cells.iter().map(|cell| judge.fate(cell)));
         }
+        Ok(Self {
+            triangulation,
+            fates,
+        })
     }
 
     fn cells(&self) -> impl Iterator<Item = &'t Cell> {

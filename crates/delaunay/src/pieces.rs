@@ -34,6 +34,8 @@ use crate::triangulation::{Cell, Triangulation};
 const POINTS_PER_PIECE: usize = 32_768;
 /// Points that a piece is thick, were they spread evenly: a border is a few points thick.
 const THICKNESS: f64 = 40.0;
+/// Cells sorted between two looks at the cancel switch: a millisecond.
+const CELLS_PER_CHECK: usize = 1 << 14;
 
 /// The cells of the whole triangulation, as ranks, in no particular order. The stage is
 /// `tetrahedra`.
@@ -51,6 +53,11 @@ fn count<K: Kernel>(sites: &Sites<K>) -> usize {
     let longest = extents.into_iter().fold(0.0, f64::max);
     let volume: f64 = extents.iter().product();
     let step = (volume / points as f64).cbrt();
+    let shortest = extents.into_iter().fold(f64::INFINITY, f64::min);
+    // A plate has most points on its hull, which is border everywhere.
+    if shortest < THICKNESS * step / 2.0 {
+        return 1;
+    }
     let by_thickness = longest / (THICKNESS * step);
     (by_thickness as usize).min(points / POINTS_PER_PIECE)
 }
@@ -69,7 +76,8 @@ fn in_pieces<K: Kernel>(
         task.begin("tetrahedra", sites.sorted.len());
         let found = shares.into_par_iter().enumerate().map(|(piece, share)| {
             let found = Triangulation::build(sites, &share, Vec::new(), task)?;
-            Ok(found.map(|found| Sorted::new(&found, &pieces, piece)))
+            let sorted = found.map(|found| Sorted::new(&found, &pieces, piece, task));
+            sorted.transpose()
         });
         let found: Option<Vec<Sorted>> = found.collect::<Result<_, DelaunayError>>()?;
         // A piece may be flat: then there is nothing to build on.
@@ -96,13 +104,24 @@ struct Sorted {
 }
 
 impl Sorted {
-    fn new<K: Kernel>(found: &Triangulation<'_, K>, pieces: &Slabs, piece: usize) -> Self {
+    fn new<K: Kernel>(
+        found: &Triangulation<'_, K>,
+        pieces: &Slabs,
+        piece: usize,
+        task: &Task,
+    ) -> Result<Self, DelaunayError> {
         let mut sorted = Self {
             safe: Vec::with_capacity(found.cells.len()),
             unsafe_cells: Vec::new(),
             border: Vec::new(),
         };
-        for cell in found.cells.iter().filter(|cell| cell.is_in_use()) {
+        for (i, cell) in found.cells.iter().enumerate() {
+            if i % CELLS_PER_CHECK == 0 {
+                task.check()?;
+            }
+            if !cell.is_in_use() {
+                continue;
+            }
             if cell.is_infinite() {
                 let hull = cell
                     .vertices
@@ -123,7 +142,7 @@ impl Sorted {
         sorted.unsafe_cells.sort_unstable();
         sorted.border.sort_unstable();
         sorted.border.dedup();
-        sorted
+        Ok(sorted)
     }
 }
 

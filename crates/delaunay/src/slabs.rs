@@ -209,7 +209,7 @@ mod tests {
     fn in_pieces<K: Kernel>(sites: &Sites<K>, alpha: f64, count: usize) -> Complex {
         let slabs = Slabs::with_count(sites, alpha, count);
         let found = slabs.triangulate(sites, &Task::default(), |slab, found| {
-            let kept = Kept::new(found, alpha, &slabs, slab);
+            let kept = Kept::new(found, alpha, &slabs, slab, &Task::default())?;
             assert_eq!(kept.count(), kept.ranks().len());
             Ok((kept.ranks(), kept.facets(&slabs, slab)))
         });

@@ -24,8 +24,9 @@ pub(crate) const GHOST: u32 = 0;
 pub(crate) const UNUSED: u32 = u32::MAX;
 /// The most cells that facets can name.
 pub(crate) const CELL_LIMIT: usize = 1 << 30;
-/// New cells between two looks at the cancel switch: a few milliseconds.
-const CELLS_PER_CHECK: usize = 1 << 14;
+/// New cells between two looks at the cancel switch: a millisecond, or some ten where every
+/// question needs exact arithmetic.
+const CELLS_PER_CHECK: usize = 1 << 12;
 
 /// Room made for cells: somewhat more than random points need.
 const CELLS_PER_POINT: usize = 7;

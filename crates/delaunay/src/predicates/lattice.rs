@@ -94,9 +94,11 @@ struct MetricFrame {
 impl MetricFrame {
     /// Cholesky's root of a metric with the given determinant.
     ///
-    /// It is the root of a metric that is off by a few roundings of the trace `t`. The smallest
-    /// eigenvalue is at least `4 det / t^2`, so lengths are off by a few `t^3 / det` roundings;
-    /// at right angles only by their own.
+    /// It is the root of a metric whose entries are off by a few roundings of the roots of the
+    /// diagonal (Higham, *Accuracy and Stability of Numerical Algorithms*, 10.1), so what counts
+    /// is the metric scaled to a diagonal of ones: lengths are off by a few roundings of the
+    /// inverse of its determinant, `xx yy zz / det`, however thick the slices. At right angles
+    /// only each length's own rounding remains.
     fn new([xx, yy, zz, xy, xz, yz]: [f64; 6], determinant: f64) -> Self {
         // Far below any entry that is not lost in rounding: it keeps a root from being 0.
         let root = |rest: f64, entry: f64| rest.max(f64::EPSILON * entry).sqrt();
@@ -105,9 +107,8 @@ impl MetricFrame {
         let y = root(yy - yx * yx, yy);
         let zy = (yz - zx * yx) / y;
         let z = root(zz - zx * zx - zy * zy, zz);
-        let trace = xx + yy + zz;
         let upright = xy == 0.0 && xz == 0.0 && yz == 0.0;
-        let condition = trace * trace * trace / determinant;
+        let condition = xx * yy * zz / determinant;
         Self {
             x,
             y: [yx, y],
@@ -334,5 +335,40 @@ impl<const TILTED: bool> Kernel for LatticeKernel<TILTED> {
 
     fn vector_mm(&self, vector: [f64; 3]) -> [f64; 3] {
         self.frame.vector_mm::<TILTED>(vector)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sphere::Precision;
+
+    #[test]
+    fn thick_slices_of_a_tilted_gantry_keep_their_spheres() {
+        for (pixel, slice) in [(0.5, 1.0), (0.45, 3.0), (0.45, 5.0), (0.3, 5.0)] {
+            for degrees in [0.00001f64, 15.0, 30.0] {
+                let sheared = pixel * slice * degrees.to_radians().sin();
+                let gram = [
+                    [pixel * pixel, 0.0, 0.0],
+                    [0.0, pixel * pixel, sheared],
+                    [0.0, sheared, slice * slice],
+                ];
+                let Ok(AnyLattice::Tilted(kernel)) = AnyLattice::new(gram, [511, 511, 200]) else {
+                    panic!("a tilted lattice");
+                };
+                let precision = Precision::new(kernel.difference_error(), 500.0);
+                assert!(precision.tolerance < 1e-3, "{pixel} {slice} {degrees}");
+                // Lengths along the axes and across, against the metric itself.
+                for v in [[1, 0, 0], [0, 1, 0], [0, 0, 1], [3, -7, 2], [-1, 9, -4]] {
+                    let mm = kernel.difference_mm(&v, &[0; 3]);
+                    let length_squared: f64 = mm.iter().map(|m| m * m).sum();
+                    let w = v.map(f64::from);
+                    let rows = [0, 1, 2].map(|i| (0..3).map(|j| gram[i][j] * w[j]).sum::<f64>());
+                    let expected: f64 = (0..3).map(|i| rows[i] * w[i]).sum();
+                    // The metric itself is rounded to 2^-40 of its largest entry.
+                    assert!((length_squared / expected - 1.0).abs() < 1e-8);
+                }
+            }
+        }
     }
 }
