@@ -26,7 +26,8 @@ macro_rules! for_any_sites {
 ///
 /// Of equal points the lowest index is used. Cells come sorted by the order of their points'
 /// coordinates (z, y, x), and so do each cell's vertices, but for the last two, which
-/// orientation places: the result depends on the set of points only. The stage is `tetrahedra`.
+/// orientation places: the result depends on the set of points only. The stages are `tetrahedra`
+/// and, for many points, `borders`.
 ///
 /// # Errors
 /// Every [`DelaunayError`] but [`DelaunayError::Alpha`].
@@ -91,7 +92,7 @@ pub fn alpha_boundary(
         let slabs = Slabs::plan(sites, alpha);
         let found = slabs.triangulate(sites, task, |slab, found| {
             let kept = Kept::new(found, alpha, &slabs, slab, task)?;
-            Ok((kept.count(), kept.facets(&slabs, slab)))
+            Ok((kept.count(), kept.facets()))
         })?;
         let facets = found.par_iter().flat_map_iter(|(_, facets)| facets);
         let named = facets.map(|facet| facet.map(|rank| sites.input[rank as usize]));

@@ -14,20 +14,10 @@ use crate::triangulation::{Cell, Triangulation};
 /// Cells judged between two looks at the cancel switch: some ten milliseconds at worst.
 const CELLS_PER_CHECK: usize = 1 << 12;
 
-/// What becomes of a cell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Fate {
-    /// Not in the complex, or not even a cell.
-    Dropped,
-    /// Kept by another slab, if it is a cell of the whole triangulation at all.
-    Foreign,
-    Kept,
-}
-
-/// A slab's triangulation and the fates of its cells.
+/// A slab's triangulation and which of its cells the slab keeps.
 pub(crate) struct Kept<'t, 'k, K: Kernel> {
     triangulation: &'t Triangulation<'k, K>,
-    fates: Vec<Fate>,
+    is_kept: Vec<bool>,
 }
 
 impl<'t, 'k, K: Kernel> Kept<'t, 'k, K> {
@@ -46,22 +36,20 @@ impl<'t, 'k, K: Kernel> Kept<'t, 'k, K> {
             slabs,
             slab,
         };
-        let mut fates = Vec::with_capacity(triangulation.cells.len());
+        let mut is_kept = Vec::with_capacity(triangulation.cells.len());
         for cells in triangulation.cells.chunks(CELLS_PER_CHECK) {
             task.check()?;
-            fates.extend(cells.iter().map(|cell| judge.fate(cell)));
+            is_kept.extend(cells.iter().map(|cell| judge.keeps(cell)));
         }
         Ok(Self {
             triangulation,
-            fates,
+            is_kept,
         })
     }
 
     fn cells(&self) -> impl Iterator<Item = &'t Cell> {
-        let cells = self.triangulation.cells.iter().zip(&self.fates);
-        cells
-            .filter(|(_, f)| **f == Fate::Kept)
-            .map(|(cell, _)| cell)
+        let cells = self.triangulation.cells.iter().zip(&self.is_kept);
+        cells.filter(|(_, kept)| **kept).map(|(cell, _)| cell)
     }
 
     /// How many cells are kept.
@@ -75,24 +63,18 @@ impl<'t, 'k, K: Kernel> Kept<'t, 'k, K> {
         self.cells().map(|c| canonical(t.cell_sites(c)).0).collect()
     }
 
-    /// Facets, outward and as ranks, of kept cells without a kept one beyond.
+    /// Facets, outward and as ranks, of kept cells with none of this slab's kept cells beyond.
     ///
-    /// Next to a cut the cell beyond may be another slab's; that slab then has the same facet
-    /// from the other side, and the two cancel. Deep in the slab every cell is known.
-    pub(crate) fn facets(&self, slabs: &Slabs, slab: usize) -> Vec<[u32; 3]> {
+    /// Beyond may be a cell that another slab keeps: that slab has the same facet from the other
+    /// side, since this one's cell is not its own, and the two cancel. A facet with a kept cell
+    /// on one side only comes once.
+    pub(crate) fn facets(&self) -> Vec<[u32; 3]> {
         let t = self.triangulation;
         let mut facets = Vec::new();
         for cell in self.cells() {
             for (across, facet) in cell.neighbours.iter().zip(outward(cell.vertices)) {
-                let beyond = self.fates[(across >> 2) as usize];
-                if beyond == Fate::Kept {
-                    continue;
-                }
-                let sites = facet.map(|v| &t.vertices[v as usize].site);
-                let is_inner =
-                    beyond == Fate::Foreign && slabs.is_deep(slab, t.kernel.place_mm(&sites[0].at));
-                if !is_inner {
-                    facets.push(sites.map(|s| s.rank));
+                if !self.is_kept[(across >> 2) as usize] {
+                    facets.push(facet.map(|v| t.vertices[v as usize].site.rank));
                 }
             }
         }
@@ -100,7 +82,7 @@ impl<'t, 'k, K: Kernel> Kept<'t, 'k, K> {
     }
 }
 
-/// What it takes to decide a cell's fate.
+/// What it takes to decide about a cell.
 struct Judge<'a, 'k, K: Kernel> {
     triangulation: &'a Triangulation<'k, K>,
     alpha: f64,
@@ -110,45 +92,37 @@ struct Judge<'a, 'k, K: Kernel> {
 }
 
 impl<K: Kernel> Judge<'_, '_, K> {
-    fn fate(&self, cell: &Cell) -> Fate {
+    fn keeps(&self, cell: &Cell) -> bool {
         if !cell.is_finite() {
-            return Fate::Dropped;
+            return false;
         }
         let (sphere, precision) = (&cell.sphere, &self.triangulation.precision);
         let slack = self.alpha_squared * precision.tolerance;
         if sphere.radius_squared > self.alpha_squared + slack {
-            return Fate::Dropped;
+            return false;
         }
         if sphere.radius_squared < self.alpha_squared - slack {
             let reach = self.alpha * precision.tolerance + 4.0 * precision.place;
             if let Some(owner) = self.slabs.only_owner(sphere.centre, reach) {
-                return self.of_owner(owner);
+                return owner == self.slab;
             }
         }
-        self.exact_fate(cell)
-    }
-
-    fn of_owner(&self, owner: usize) -> Fate {
-        if owner == self.slab {
-            Fate::Kept
-        } else {
-            Fate::Foreign
-        }
+        self.keeps_exactly(cell)
     }
 
     /// Whoever asks gets the same answer: nothing is rounded but the centre, from one order of
     /// the sites.
-    fn exact_fate(&self, cell: &Cell) -> Fate {
+    fn keeps_exactly(&self, cell: &Cell) -> bool {
         let kernel = self.triangulation.kernel;
         let (_, sites) = canonical(self.triangulation.cell_sites(cell));
         let sphere = kernel.exact_sphere(sites.each_ref().map(|s| &s.at));
         if !sphere.radius_is_at_most(self.alpha) {
-            return Fate::Dropped;
+            return false;
         }
         let corner = kernel.place_mm(&sites[0].at);
         let to_centre = kernel.vector_mm(sphere.centre());
         let centre = [0, 1, 2].map(|k| corner[k] + to_centre[k]);
-        self.of_owner(self.slabs.owner(centre))
+        self.slabs.owner(centre) == self.slab
     }
 }
 

@@ -6,17 +6,18 @@
 //! 3. Triangulate the border's points alone. Of these cells, those with vertices of several
 //!    pieces belong to the whole, and of the others those that a piece had found, too.
 //!
-//! Why that is all and nothing else (Funke and Sanders 2017):
+//! Why that is all and nothing else (after Funke and Sanders 2017):
 //! - A vertex none of whose cells in its piece is in conflict with another piece's point has the
 //!   same cells in the whole. So every vertex of a cell of several pieces is on the border, and
 //!   that cell is one of the border's triangulation.
-//! - A cell of a piece and of the border's triangulation has no point of another piece inside:
-//!   the points in a ball are joined by edges of the whole that stay in it, so a path from the
-//!   cell to such a point crosses over to another piece within the ball, at a point of the
-//!   border, which would be inside as well.
-//! - The cells of the whole with vertices of one piece only fill regions that touch no other
-//!   piece's region. A cell of several pieces in the border's triangulation overlaps no such cell
-//!   of the whole, and is not in one region, as its vertices are of several: it is of the whole.
+//! - A cell of the border's triangulation with a vertex `v` outside piece `k` has no point `q`
+//!   of `k` inside. Lift all points, and take heights from the plane through the cell's lifted
+//!   vertices: inside is below. From `v` and from `q` edges of the whole descend to the lowest
+//!   point, past points inside only. So a path leads from `v` to `q`, and on it an edge enters
+//!   `k`. That edge belongs to cells of several pieces: its end in `k` is on the border, and
+//!   inside, where the border's triangulation has none.
+//! - So a cell of several pieces there has nothing inside: it is of the whole. A cell of one
+//!   piece may only have that piece's points inside, and has none if the piece found it, too.
 //!
 //! All of this holds with ties settled by [`crate::predicates`], which are those of one lift.
 
@@ -37,8 +38,8 @@ const THICKNESS: f64 = 40.0;
 /// Cells sorted between two looks at the cancel switch: a millisecond.
 const CELLS_PER_CHECK: usize = 1 << 14;
 
-/// The cells of the whole triangulation, as ranks, in no particular order. The stage is
-/// `tetrahedra`.
+/// The cells of the whole triangulation, as ranks, in no particular order. The stages are
+/// `tetrahedra` and, where there are pieces, `borders`.
 pub(crate) fn whole<K: Kernel>(
     sites: &Sites<K>,
     task: &Task,
@@ -175,7 +176,7 @@ fn joined<K: Kernel>(
         .iter()
         .map(|&rank| sites.sorted[rank as usize])
         .collect();
-    task.begin("tetrahedra", at_border.len());
+    task.begin("borders", at_border.len());
     let between = Triangulation::build(sites, &at_border, Vec::new(), task)?
         .expect("the hull of a solid piece is solid, anything else is a bug");
     let owner = |s: &Site<K::Scalar>| pieces.owner(sites.kernel.place_mm(&s.at));

@@ -78,6 +78,8 @@ impl Slabs {
     pub(crate) fn without_margin<K: Kernel>(sites: &Sites<K>, count: usize) -> Self {
         let mut slabs = Self::with_count(sites, f64::INFINITY, count);
         slabs.margin = 0.0;
+        // Many points at the lowest place would leave the first slab empty.
+        slabs.cuts.retain(|&cut| cut > sites.bounds.low[slabs.axis]);
         slabs
     }
 
@@ -102,27 +104,16 @@ impl Slabs {
         next.is_none_or(|&cut| along + reach < cut).then_some(owner)
     }
 
-    /// Whether a place is so deep in its slab that every ball of radius alpha which touches it
-    /// has its centre there.
-    #[inline]
-    pub(crate) fn is_deep(&self, slab: usize, place_mm: [f64; 3]) -> bool {
-        self.reach(slab, -self.margin)
-            .contains(&place_mm[self.axis])
-    }
-
-    /// A slab, wider by `margin` at each cut.
-    #[inline]
-    fn reach(&self, slab: usize, margin: f64) -> RangeInclusive<f64> {
-        let below = slab.checked_sub(1).map(|i| self.cuts[i] - margin);
-        let above = self.cuts.get(slab).map(|cut| cut + margin);
+    /// A slab, wider by the margin at each cut.
+    fn reach(&self, slab: usize) -> RangeInclusive<f64> {
+        let below = slab.checked_sub(1).map(|i| self.cuts[i] - self.margin);
+        let above = self.cuts.get(slab).map(|cut| cut + self.margin);
         below.unwrap_or(f64::NEG_INFINITY)..=above.unwrap_or(f64::INFINITY)
     }
 
     /// The sites of each slab and its margins, in the order of ranks.
     fn share_out<K: Kernel>(&self, sites: &Sites<K>) -> Vec<Vec<Site<K::Scalar>>> {
-        let reaches: Vec<_> = (0..self.len())
-            .map(|slab| self.reach(slab, self.margin))
-            .collect();
+        let reaches: Vec<_> = (0..self.len()).map(|slab| self.reach(slab)).collect();
         let mut shares = vec![Vec::new(); self.len()];
         for site in &sites.sorted {
             let along = sites.kernel.place_mm(&site.at)[self.axis];
@@ -211,7 +202,7 @@ mod tests {
         let found = slabs.triangulate(sites, &Task::default(), |slab, found| {
             let kept = Kept::new(found, alpha, &slabs, slab, &Task::default())?;
             assert_eq!(kept.count(), kept.ranks().len());
-            Ok((kept.ranks(), kept.facets(&slabs, slab)))
+            Ok((kept.ranks(), kept.facets()))
         });
         let (cells, facets): (Vec<_>, Vec<_>) = found.unwrap().into_iter().unzip();
         let mut cells = cells.concat();

@@ -279,6 +279,9 @@ mod tests {
                 );
                 let side = precision.side(&sphere, query);
                 prop_assert!(side == 0.0 || (side < 0.0) == inside, "{side} {inside}");
+                // Nearly all of the solid cells have a sphere, and it is sure of easy queries.
+                let is_easy = nearness > 1e-3 && !sphere.radius_squared.is_nan();
+                prop_assert!(side != 0.0 || !is_easy);
             }
         }
     }

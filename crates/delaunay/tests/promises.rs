@@ -211,7 +211,8 @@ fn two_skew_lines_make_a_cell_of_every_pair_of_steps() {
 
 #[test]
 fn a_rim_of_hundreds_of_facets_is_closed() {
-    // A ring around an axis of two points: the last point's cavity has one cell a ring point.
+    // A ring around an axis: a point on the axis that comes after a hundred of the ring has a
+    // cavity with a cell for each of them, whatever the order of the others.
     let mut points: Vec<[i32; 3]> = Vec::new();
     for i in 0..400 {
         let angle = f64::from(i) / 400.0 * std::f64::consts::TAU;
@@ -231,30 +232,36 @@ fn a_rim_of_hundreds_of_facets_is_closed() {
 
 #[test]
 fn any_number_of_threads_gives_the_same_bytes() {
-    let points = shell(40, 2);
-    let gram = [[0.2, 0.0, 0.0], [0.0, 0.2, 0.0], [0.0, 0.0, 0.8]];
+    // A long tube wall: enough points for several slabs and, without alpha, several pieces.
+    let mut points = block([41, 41, 700]);
+    points.retain(|p| (225..=400).contains(&((p[0] - 20).pow(2) + (p[1] - 20).pow(2))));
+    let gram = [[0.2, 0.0, 0.0], [0.0, 0.2, 0.0], [0.0, 0.0, 0.3]];
     let lattice = Points::Lattice {
         coordinates: &points,
         gram,
     };
+    let workers = |n| pool(std::num::NonZeroUsize::new(n)).unwrap();
     let runs: Vec<(Tetrahedra, AlphaBoundary)> = [1, 2, 3, 8]
         .into_iter()
         .map(|n| {
-            let pool = pool(std::num::NonZeroUsize::new(n)).unwrap();
-            pool.install(|| {
-                let cells = alpha_complex(lattice, 1.5, &Task::default()).unwrap();
+            workers(n).install(|| {
+                let whole = tetrahedralize(lattice, &Task::default()).unwrap();
                 let boundary = alpha_boundary(lattice, 1.5, &Task::default()).unwrap();
-                (cells, boundary)
+                (whole, boundary)
             })
         })
         .collect();
-    let (cells, boundary) = &runs[0];
-    assert!(cells.cells.len() > points.len());
-    assert_eq!(
-        boundary.triangles,
-        cells.boundary(&Task::default()).unwrap()
-    );
     assert!(runs.iter().all(|run| *run == runs[0]));
+    let (whole, boundary) = &runs[0];
+    let kept = alpha_complex(lattice, 1.5, &Task::default()).unwrap();
+    assert!(kept.cells.len() > points.len() && kept.cells.len() < whole.cells.len());
+    assert_eq!(boundary.triangles, kept.boundary(&Task::default()).unwrap());
+    let mut of_whole = whole.cells.iter();
+    let is_of_whole = |cell| of_whole.by_ref().any(|other| other == cell);
+    assert!(
+        kept.cells.iter().all(is_of_whole),
+        "the same cells in the same order"
+    );
 }
 
 #[test]

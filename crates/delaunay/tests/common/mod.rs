@@ -64,6 +64,25 @@ impl Oracle<'_> {
             .sum()
     }
 
+    /// The squared circumradius as a fraction: `N^T adj(G) N / (4 D^2 det G)`, with `D` and `N`
+    /// the determinant and the sum of squared lengths times cross products of three edges.
+    pub(crate) fn radius_squared(&self, cell: [u32; 4]) -> (i128, i128) {
+        let [a, b, c, d] = cell.map(|v| self.at(v));
+        let [u, v, w] = [sub(b, a), sub(c, a), sub(d, a)];
+        let (vw, wu, uv) = (cross(v, w), cross(w, u), cross(u, v));
+        let [lu, lv, lw] = [u, v, w].map(|e| self.squared(e));
+        let normal = [0, 1, 2].map(|k| lu * vw[k] + lv * wu[k] + lw * uv[k]);
+        let rows = self.gram.map(|row| row.map(i128::from));
+        let adjugate = [
+            cross(rows[1], rows[2]),
+            cross(rows[2], rows[0]),
+            cross(rows[0], rows[1]),
+        ];
+        let centre = adjugate.map(|row| dot(row, normal));
+        let volume = det3([u, v, w]);
+        (dot(normal, centre), 4 * volume * volume * det3(rows))
+    }
+
     fn squared(&self, p: [i128; 3]) -> i128 {
         (0..3)
             .flat_map(|i| (0..3).map(move |j| (i, j)))
@@ -125,6 +144,18 @@ pub(crate) fn as_f64(points: &[[i32; 3]]) -> Vec<[f64; 3]> {
 
 fn sub(a: [i128; 3], b: [i128; 3]) -> [i128; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn dot(a: [i128; 3], b: [i128; 3]) -> i128 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: [i128; 3], b: [i128; 3]) -> [i128; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
 }
 
 fn det3([u, v, w]: [[i128; 3]; 3]) -> i128 {

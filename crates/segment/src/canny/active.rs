@@ -6,6 +6,7 @@
 //! one operation, and empty ones cost nothing.
 
 use super::plane::Extent;
+
 /// Column ranges `start..end` of each row, ascending and apart.
 #[derive(Default)]
 pub(super) struct Spans {
