@@ -5,6 +5,8 @@
 //!    triangulated sphere, and the point sees all of it from inside.
 //! 3. [`Triangulation::close`] joins the point to every facet of the rim.
 
+use prefetch_index::prefetch_index;
+
 use crate::predicates::{Kernel, Site};
 use crate::star::Edges;
 use crate::triangulation::Triangulation;
@@ -120,6 +122,10 @@ impl<K: Kernel> Triangulation<'_, K> {
         if glance.side < 0.0 || (glance.side == 0.0 && self.conflicts(beyond, newcomer.site)) {
             self.cells[beyond as usize].sphere.radius_squared = DOOMED;
             cavity.entries.push(glance.across);
+            // By the time the queue gets there, its neighbours have come from memory.
+            for across in self.cells[beyond as usize].neighbours {
+                prefetch_index(&self.cells, (across >> 2) as usize);
+            }
             return;
         }
         let facet = glance.facet & 3;
