@@ -123,7 +123,7 @@ pub(crate) fn single_facets_sorted(
     task.check()?;
     keys.par_sort_unstable_by_key(|&(first, key)| u128::from(first) << 64 | u128::from(key));
     task.check()?;
-    let same = keys.chunk_by(|(a, p), (b, q)| a == b && p >> 1 == q >> 1);
+    let same = keys.par_chunk_by(|(a, p), (b, q)| a == b && p >> 1 == q >> 1);
     let singles = same.filter(|facets| facets.len() == 1);
     Ok(singles.map(|f| facet(f[0].0, f[0].1)).collect())
 }

@@ -12,6 +12,9 @@ const SMALLEST: f64 = 1e-45;
 /// Largest size of a free coordinate: an in-sphere determinant stays finite.
 const LARGEST: f64 = 1e55;
 
+/// Sites that one thread looks at in one go.
+const SITES_PER_CHUNK: usize = 1 << 14;
+
 /// The points to tetrahedralise.
 #[derive(Clone, Copy, Debug)]
 pub enum Points<'a> {
@@ -60,12 +63,15 @@ pub(crate) struct Bounds {
 }
 
 impl Bounds {
-    /// Of any places; infinite and upside down where there are none.
+    /// Of no place: infinite and upside down.
+    const NONE: Self = Self {
+        low: [f64::INFINITY; 3],
+        high: [f64::NEG_INFINITY; 3],
+    };
+
+    /// Of any places.
     pub(crate) fn of(places: impl Iterator<Item = [f64; 3]>) -> Self {
-        let mut bounds = Self {
-            low: [f64::INFINITY; 3],
-            high: [f64::NEG_INFINITY; 3],
-        };
+        let mut bounds = Self::NONE;
         for place in places {
             for (k, v) in place.into_iter().enumerate() {
                 bounds.low[k] = bounds.low[k].min(v);
@@ -73,6 +79,13 @@ impl Bounds {
             }
         }
         bounds
+    }
+
+    fn with(self, other: Self) -> Self {
+        Self {
+            low: [0, 1, 2].map(|k| self.low[k].min(other.low[k])),
+            high: [0, 1, 2].map(|k| self.high[k].max(other.high[k])),
+        }
     }
 
     /// The coordinate that is largest in size.
@@ -198,7 +211,9 @@ impl<K: Kernel> Sites<K> {
         let ranked = sorted.par_iter().zip(0u32..distinct as u32);
         let sorted: Vec<Site<K::Scalar>> =
             ranked.map(|(&(at, _), rank)| Site { at, rank }).collect();
-        let bounds = Bounds::of(sorted.iter().map(|s| kernel.place_mm(&s.at)));
+        let bounds = sorted.par_chunks(SITES_PER_CHUNK);
+        let bounds = bounds.map(|sites| Bounds::of(sites.iter().map(|s| kernel.place_mm(&s.at))));
+        let bounds = bounds.reduce(|| Bounds::NONE, Bounds::with);
         Ok(Self {
             precision: Precision::new(kernel.difference_error(), bounds.largest()),
             kernel,

@@ -21,7 +21,7 @@ use rayon::prelude::*;
 use crate::DelaunayError;
 use crate::points::Sites;
 use crate::predicates::{Kernel, Site};
-use crate::triangulation::Triangulation;
+use crate::triangulation::{Cell, Triangulation};
 
 /// How much margin may add to the work, as a part of the points' extent.
 const MARGIN_SHARE: f64 = 0.125;
@@ -113,17 +113,13 @@ impl Slabs {
 
     /// The sites of each slab and its margins, in the order of ranks.
     fn share_out<K: Kernel>(&self, sites: &Sites<K>) -> Vec<Vec<Site<K::Scalar>>> {
-        let reaches: Vec<_> = (0..self.len()).map(|slab| self.reach(slab)).collect();
-        let mut shares = vec![Vec::new(); self.len()];
-        for site in &sites.sorted {
-            let along = sites.kernel.place_mm(&site.at)[self.axis];
-            let first = reaches.partition_point(|reach| *reach.end() < along);
-            let holding = reaches[first..].iter().zip(&mut shares[first..]);
-            for (_, share) in holding.take_while(|(reach, _)| *reach.start() <= along) {
-                share.push(*site);
-            }
-        }
-        shares
+        let share = |slab| {
+            let reach = self.reach(slab);
+            let along = |s: &&Site<K::Scalar>| sites.kernel.place_mm(&s.at)[self.axis];
+            let is_near = |s: &&Site<K::Scalar>| reach.contains(&along(s));
+            sites.sorted.iter().filter(is_near).copied().collect()
+        };
+        (0..self.len()).into_par_iter().map(share).collect()
     }
 
     /// Triangulates every slab and gives each triangulation, with its slab's number, to
@@ -137,20 +133,49 @@ impl Slabs {
     ) -> Result<Vec<T>, DelaunayError> {
         let shares = self.share_out(sites);
         task.begin("tetrahedra", shares.iter().map(Vec::len).sum());
-        // Room for cells goes from slab to slab: new memory would cost a tenth of the time.
-        let rooms = Mutex::new(Vec::new());
-        let rooms = || rooms.lock().unwrap_or_else(PoisonError::into_inner);
+        let rooms = Rooms::new(shares.len());
         let harvests = shares.into_par_iter().enumerate().map(|(slab, share)| {
-            let room = rooms().pop().unwrap_or_default();
-            let Some(found) = Triangulation::build(sites, &share, room, task)? else {
+            let Some(found) = Triangulation::build(sites, &share, rooms.take(), task)? else {
                 return Ok(None);
             };
             let harvested = harvest(slab, &found)?;
-            rooms().push(found.into_room());
+            rooms.give(found.into_room());
             Ok(Some(harvested))
         });
         let harvests: Vec<Option<T>> = harvests.collect::<Result<_, DelaunayError>>()?;
         Ok(harvests.into_iter().flatten().collect())
+    }
+}
+
+/// Memory of cells that goes from slab to slab: new memory would cost a tenth of the time.
+struct Rooms(Mutex<FreeRooms>);
+
+struct FreeRooms {
+    rooms: Vec<Vec<Cell>>,
+    /// Slabs that have not asked for a room.
+    waiting: usize,
+}
+
+impl Rooms {
+    fn new(slabs: usize) -> Self {
+        Self(Mutex::new(FreeRooms {
+            rooms: Vec::new(),
+            waiting: slabs,
+        }))
+    }
+
+    fn take(&self) -> Vec<Cell> {
+        let mut free = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        free.waiting -= 1;
+        free.rooms.pop().unwrap_or_default()
+    }
+
+    /// Keeps a room for the next slab, or frees it while other threads are at work.
+    fn give(&self, room: Vec<Cell>) {
+        let mut free = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if free.waiting > 0 {
+            free.rooms.push(room);
+        }
     }
 }
 
