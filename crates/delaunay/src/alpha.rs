@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use crate::boundary::single_facets_sorted;
 use crate::kept::Kept;
+use crate::numbered::numbered;
 use crate::pieces::whole;
 use crate::points::{AnySites, Points, Sites};
 use crate::predicates::Kernel;
@@ -34,7 +35,7 @@ macro_rules! for_any_sites {
 pub fn tetrahedralize(points: Points<'_>, task: &Task) -> Result<Tetrahedra, DelaunayError> {
     fn all<K: Kernel>(sites: &Sites<K>, task: &Task) -> Result<Tetrahedra, DelaunayError> {
         let cells = whole(sites, task)?;
-        Ok(numbered(cells, sites))
+        Ok(numbered(&[cells], &sites.input, task)?)
     }
     for_any_sites!(points, sites => all(&sites, task))
 }
@@ -62,7 +63,7 @@ pub fn alpha_complex(
             let kept = Kept::new(found, alpha, &slabs, slab, task)?;
             Ok(kept.ranks())
         })?;
-        Ok(numbered(cells.concat(), sites))
+        Ok(numbered(&cells, &sites.input, task)?)
     }
     checked(alpha)?;
     if alpha == f64::INFINITY {
@@ -118,17 +119,4 @@ fn checked(alpha: f64) -> Result<(), DelaunayError> {
         return Err(DelaunayError::Alpha(alpha));
     }
     Ok(())
-}
-
-/// Sorts cells of ranks and names the input's points.
-fn numbered<K: Kernel>(mut cells: Vec<[u32; 4]>, sites: &Sites<K>) -> Tetrahedra {
-    // As one long number a cell compares in the same order, but quicker.
-    cells.par_sort_unstable_by_key(|&[a, b, c, d]| {
-        let pair = |high: u32, low: u32| u64::from(high) << 32 | u64::from(low);
-        u128::from(pair(a, b)) << 64 | u128::from(pair(c, d))
-    });
-    cells
-        .par_iter_mut()
-        .for_each(|cell| *cell = cell.map(|rank| sites.input[rank as usize]));
-    Tetrahedra { cells }
 }

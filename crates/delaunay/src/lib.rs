@@ -50,7 +50,7 @@
 //!    *lift*, larger for higher ranks, so all ties together are those of one true
 //!    triangulation; positions are not perturbed, which would leave flat cells.
 //! 8. `kept`: cells are kept by circumradius, and facets without a kept cell beyond are the
-//!    boundary; `alpha` puts cells and facets in order and names them by the input's indices.
+//!    boundary; `numbered` puts cells in order and names them by the input's indices.
 //!
 //! # What was tried
 //! On the edges of a skull (592,212 points, alpha 2.4 mm) or random points, one thread's work,
@@ -97,6 +97,7 @@ mod hilbert;
 mod insert;
 mod kept;
 mod locate;
+mod numbered;
 mod pieces;
 mod points;
 mod predicates;
