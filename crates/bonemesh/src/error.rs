@@ -67,7 +67,9 @@ pub enum Error {
         sampler: &'static str,
     },
     /// Points of one place have no neighbour distance.
-    #[error("the points lie in one place, so there is no alpha; give points in mm that differ")]
+    #[error(
+        "every point has its nearest neighbours in its own place, so there is no alpha; take repeated points out or set alpha"
+    )]
     NoAlpha,
     /// The worker threads.
     #[error(transparent)]

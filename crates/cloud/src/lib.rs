@@ -40,6 +40,7 @@ mod extract;
 mod io;
 mod neighbours;
 mod point_cloud;
+mod recognise;
 mod sampling;
 
 use std::path::PathBuf;

@@ -96,6 +96,14 @@ impl PointCloud {
         Self { points_mm, lattice }
     }
 
+    /// The same points on their lattice.
+    pub(crate) fn on(self, lattice: Lattice) -> Self {
+        Self {
+            points_mm: self.points_mm,
+            lattice: Some(lattice),
+        }
+    }
+
     fn checked(points_mm: Vec<[f64; 3]>, lattice: Option<Lattice>) -> Result<Self, CloudError> {
         if points_mm.len() > u32::MAX as usize {
             return Err(CloudError::TooMany(points_mm.len()));

@@ -14,8 +14,8 @@ use crate::{AlphaBoundary, DelaunayError, Tetrahedra};
 
 /// Calls a function of the sites, whatever their kind.
 macro_rules! for_any_sites {
-    ($points:expr, $sites:ident => $call:expr) => {
-        match AnySites::new($points)? {
+    ($points:expr, $task:expr, $sites:ident => $call:expr) => {
+        match AnySites::new($points, $task)? {
             AnySites::Upright($sites) => $call,
             AnySites::Tilted($sites) => $call,
             AnySites::Free($sites) => $call,
@@ -37,7 +37,7 @@ pub fn tetrahedralize(points: Points<'_>, task: &Task) -> Result<Tetrahedra, Del
         let cells = whole(sites, task)?;
         Ok(numbered(&[cells], &sites.input, task)?)
     }
-    for_any_sites!(points, sites => all(&sites, task))
+    for_any_sites!(points, task, sites => all(&sites, task))
 }
 
 /// The Delaunay tetrahedra of `points` with a circumradius of at most `alpha` (mm).
@@ -69,7 +69,7 @@ pub fn alpha_complex(
     if alpha == f64::INFINITY {
         return tetrahedralize(points, task);
     }
-    for_any_sites!(points, sites => small(&sites, alpha, task))
+    for_any_sites!(points, task, sites => small(&sites, alpha, task))
 }
 
 /// The boundary of [`alpha_complex`], without the time and memory that a list of its tetrahedra
@@ -111,7 +111,7 @@ pub fn alpha_boundary(
             tetrahedra: all.cells.len(),
         });
     }
-    for_any_sites!(points, sites => small(&sites, alpha, task))
+    for_any_sites!(points, task, sites => small(&sites, alpha, task))
 }
 
 fn checked(alpha: f64) -> Result<(), DelaunayError> {

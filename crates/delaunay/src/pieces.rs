@@ -172,6 +172,7 @@ fn joined<K: Kernel>(
         .flat_map(|f| f.border.iter().copied())
         .collect();
     border.sort_unstable();
+    task.check()?;
     let at_border: Vec<Site<K::Scalar>> = border
         .iter()
         .map(|&rank| sites.sorted[rank as usize])
@@ -215,7 +216,7 @@ mod tests {
     }
 
     fn assert_of_any(points: Points<'_>, count: usize) {
-        match AnySites::new(points) {
+        match AnySites::new(points, &Task::default()) {
             Ok(AnySites::Upright(sites)) => assert_pieces_make_the_whole(&sites, count),
             Ok(AnySites::Tilted(sites)) => assert_pieces_make_the_whole(&sites, count),
             Ok(AnySites::Free(sites)) => assert_pieces_make_the_whole(&sites, count),
@@ -263,11 +264,14 @@ mod tests {
         let points: Vec<[f64; 3]> = (0..600_000)
             .map(|i| [i % 100, i / 100 % 60, i / 6000].map(f64::from))
             .collect();
-        let Ok(AnySites::Free(sites)) = AnySites::new(Points::Free(&points)) else {
+        let Ok(AnySites::Free(sites)) = AnySites::new(Points::Free(&points), &Task::default())
+        else {
             panic!("free points");
         };
         assert_eq!(count(&sites), 2);
-        let Ok(AnySites::Free(sites)) = AnySites::new(Points::Free(&points[..60_000])) else {
+        let Ok(AnySites::Free(sites)) =
+            AnySites::new(Points::Free(&points[..60_000]), &Task::default())
+        else {
             panic!("free points");
         };
         assert!(count(&sites) <= 1);

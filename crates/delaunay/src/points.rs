@@ -1,5 +1,6 @@
 //! From the caller's points to distinct sites in the order of their coordinates.
 
+use bonemesh_task::Task;
 use rayon::prelude::*;
 
 use crate::DelaunayError;
@@ -104,7 +105,7 @@ pub(crate) enum AnySites {
 
 impl AnySites {
     /// Checks the points, and that they span space.
-    pub(crate) fn new(points: Points<'_>) -> Result<Self, DelaunayError> {
+    pub(crate) fn new(points: Points<'_>, task: &Task) -> Result<Self, DelaunayError> {
         // Positions, cells and this crate's sort keys hold indices in 32 bits.
         if points.len() > crate::triangulation::CELL_LIMIT {
             return Err(DelaunayError::TooMany {
@@ -116,7 +117,9 @@ impl AnySites {
             Points::Lattice { coordinates, gram } => {
                 let (low, extent) = bounds(coordinates);
                 let kernel = AnyLattice::new(gram, extent)?;
+                task.check()?;
                 let sorted = sorted_lattice(coordinates, low);
+                task.check()?;
                 Ok(match kernel {
                     AnyLattice::Upright(k) => Self::Upright(Sites::new(k, &sorted, points)?),
                     AnyLattice::Tilted(k) => Self::Tilted(Sites::new(k, &sorted, points)?),
@@ -124,6 +127,7 @@ impl AnySites {
             }
             Points::Free(free) => {
                 let sorted = sorted_free(free)?;
+                task.check()?;
                 Ok(Self::Free(Sites::new(FreeKernel, &sorted, points)?))
             }
         }

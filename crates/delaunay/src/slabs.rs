@@ -46,23 +46,37 @@ pub(crate) struct Slabs {
 impl Slabs {
     /// As many slabs, a power of two, as keep the margins small, with equal shares of points.
     pub(crate) fn plan<K: Kernel>(sites: &Sites<K>, alpha: f64) -> Self {
-        let (_, extent) = longest_axis(sites);
+        let (axis, extent) = longest_axis(sites);
+        let places = sampled_places(sites, axis);
         let by_margin = 1.0 + MARGIN_SHARE * extent / (2.0 * margin(sites, alpha));
         let by_points = sites.sorted.len() / POINTS_PER_SLAB;
         let slabs = (by_margin as usize).min(by_points).max(1);
-        Self::with_count(sites, alpha, 1 << slabs.ilog2())
+        let mut count = 1usize << slabs.ilog2();
+        // Where points crowd, their slabs are thin: the margins then hold most of them.
+        loop {
+            let slabs = Self::at_quantiles(sites, axis, &places, alpha, count);
+            if slabs.with_margins(&places) <= (1.0 + MARGIN_SHARE) * places.len() as f64 {
+                return slabs;
+            }
+            count /= 2;
+        }
     }
 
     /// `count` slabs with about equal shares of points.
     pub(crate) fn with_count<K: Kernel>(sites: &Sites<K>, alpha: f64, count: usize) -> Self {
         let (axis, _) = longest_axis(sites);
+        Self::at_quantiles(sites, axis, &sampled_places(sites, axis), alpha, count)
+    }
+
+    /// `count` slabs with about equal shares of the sorted `places`.
+    fn at_quantiles<K: Kernel>(
+        sites: &Sites<K>,
+        axis: usize,
+        places: &[f64],
+        alpha: f64,
+        count: usize,
+    ) -> Self {
         let margin = margin(sites, alpha);
-        let stride = sites.sorted.len().div_ceil(SAMPLES).max(1);
-        let sampled = sites.sorted.iter().step_by(stride);
-        let mut places: Vec<f64> = sampled
-            .map(|s| sites.kernel.place_mm(&s.at)[axis])
-            .collect();
-        places.sort_unstable_by(f64::total_cmp);
         let mut cuts: Vec<f64> = (1..count)
             .map(|i| places[i * places.len() / count])
             .collect();
@@ -72,6 +86,16 @@ impl Slabs {
             cuts.clear();
         }
         Self { axis, cuts, margin }
+    }
+
+    /// How many of the sorted `places` all slabs with their margins hold.
+    fn with_margins(&self, places: &[f64]) -> f64 {
+        let held = (0..self.len()).map(|slab| {
+            let reach = self.reach(slab);
+            let first = places.partition_point(|place| place < reach.start());
+            places[first..].partition_point(|place| place <= reach.end())
+        });
+        held.sum::<usize>() as f64
     }
 
     /// `count` slabs whose points are their own.
@@ -132,6 +156,7 @@ impl Slabs {
         harvest: impl Fn(usize, &Triangulation<'_, K>) -> Result<T, DelaunayError> + Sync,
     ) -> Result<Vec<T>, DelaunayError> {
         let shares = self.share_out(sites);
+        task.check()?;
         task.begin("tetrahedra", shares.iter().map(Vec::len).sum());
         let rooms = Rooms::new(shares.len());
         let harvests = shares.into_par_iter().enumerate().map(|(slab, share)| {
@@ -179,6 +204,16 @@ impl Rooms {
     }
 }
 
+/// Places along an axis of evenly chosen sites, sorted.
+fn sampled_places<K: Kernel>(sites: &Sites<K>, axis: usize) -> Vec<f64> {
+    let stride = sites.sorted.len().div_ceil(SAMPLES).max(1);
+    let sampled = sites.sorted.iter().step_by(stride);
+    let places = sampled.map(|s| sites.kernel.place_mm(&s.at)[axis]);
+    let mut places: Vec<f64> = places.collect();
+    places.sort_unstable_by(f64::total_cmp);
+    places
+}
+
 /// The axis of the largest extent, and that extent in mm.
 fn longest_axis<K: Kernel>(sites: &Sites<K>) -> (usize, f64) {
     let extent = |k: usize| sites.bounds.high[k] - sites.bounds.low[k];
@@ -203,7 +238,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn free_sites(points: &[[f64; 3]]) -> Option<Sites<FreeKernel>> {
-        match AnySites::new(Points::Free(points)) {
+        match AnySites::new(Points::Free(points), &Task::default()) {
             Ok(AnySites::Free(sites)) => Some(sites),
             _ => None,
         }
@@ -251,7 +286,7 @@ mod tests {
             tilt in prop_oneof![Just(0.0), Just(0.3)],
         ) {
             let gram = [[1.0, tilt, 0.0], [tilt, 1.0, 0.0], [0.0, 0.0, third]];
-            match AnySites::new(Points::Lattice { coordinates: &points, gram }) {
+            match AnySites::new(Points::Lattice { coordinates: &points, gram }, &Task::default()) {
                 Ok(AnySites::Upright(s)) => {
                     prop_assert_eq!(in_pieces(&s, alpha, count), whole(&s, alpha));
                 }
@@ -304,7 +339,7 @@ mod tests {
             coordinates: &points,
             gram,
         };
-        let Ok(AnySites::Upright(sites)) = AnySites::new(lattice) else {
+        let Ok(AnySites::Upright(sites)) = AnySites::new(lattice, &Task::default()) else {
             panic!("an upright lattice");
         };
         let found = in_pieces(&sites, 2.0, 3);
@@ -322,5 +357,10 @@ mod tests {
         assert!(Slabs::plan(&sites, 100.0).cuts.is_empty());
         let sites = free_sites(&long[..1000]).unwrap();
         assert!(Slabs::plan(&sites, 0.01).cuts.is_empty());
+        // A point far away makes the cloud longer, not its slabs thicker.
+        let mut stray = long;
+        stray.push([1e7, 0.0, 0.0]);
+        let sites = free_sites(&stray).unwrap();
+        assert!(Slabs::plan(&sites, 100.0).cuts.is_empty());
     }
 }

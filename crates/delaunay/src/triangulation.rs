@@ -144,6 +144,7 @@ impl<'k, K: Kernel> Triangulation<'k, K> {
     ) -> Result<Option<Self>, DelaunayError> {
         let kernel = &of.kernel;
         let order = insertion_order(points.iter().map(|s| kernel.place_mm(&s.at)));
+        task.check()?;
         // The ghost comes first; its site is never looked at.
         let ghost = Site {
             at: [K::Scalar::default(); 3],

@@ -41,7 +41,9 @@ impl PointSet {
     pub(crate) fn into_cloud(self) -> Result<PointCloud, CloudError> {
         match self {
             Self::OnLattice(lattice) => PointCloud::from_lattice(lattice),
-            Self::Free(points_mm) => PointCloud::from_points(points_mm),
+            Self::Free(points_mm) => {
+                Ok(PointCloud::from_points(points_mm)?.with_lattice_recognised())
+            }
         }
     }
 }

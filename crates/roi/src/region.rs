@@ -58,7 +58,7 @@ pub fn select_region(
     let points = region_points(mesh.vertices_mm(), selection.indices(), &behind.kept);
     // Never all in one plane: in the plane of the selection, a point within t (Manhattan) of a
     // selected one is at least t from its projection along the normal, so it was not kept.
-    let cloud = PointCloud::from_points(points)?;
+    let cloud = PointCloud::from_points(points)?.with_lattice_recognised();
     let alpha_mm = mean_neighbour_distance(&cloud, NEIGHBOURS, true, task)?;
     let AlphaSurface {
         mesh,

@@ -58,7 +58,8 @@ pub fn check_target(path: &Path) -> Result<(), CloudError> {
     })
 }
 
-/// Reads a cloud of free points (mm); the file's ending names the format.
+/// Reads a cloud of points (mm), with their lattice if they lie on one along the axes; the file's
+/// ending names the format.
 ///
 /// `.npy`: an array of N rows and 3 columns, floating point or whole numbers. `.ply`: the
 /// vertices, text or binary, other elements are left out. `.xyz`: three numbers a line; further
@@ -78,10 +79,11 @@ pub fn read_cloud(path: &Path) -> Result<PointCloud, CloudError> {
         CloudFormat::Ply => ply::parse(&bytes),
         CloudFormat::Xyz => xyz::parse(&bytes),
     };
-    PointCloud::from_points(points.map_err(|reason| CloudError::Format {
+    let points = points.map_err(|reason| CloudError::Format {
         path: path.to_owned(),
         reason,
-    })?)
+    })?;
+    Ok(PointCloud::from_points(points)?.with_lattice_recognised())
 }
 
 /// Writes a cloud's points (mm); the file's ending names the format.
