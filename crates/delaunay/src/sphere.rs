@@ -9,8 +9,10 @@
 //! `38 e R m^3 / |D|`. Cells with `|D| >= FLAT m^3` therefore have centre and radius within
 //! `k R`, `k = 40 e / FLAT`; flatter ones get no sphere. A query `q` is compared by
 //! `s = |q - c|^2 - R^2`, whose error is at most `2 (|q - c| + R) (k R + a)` with `a` the error
-//! of absolute places. Where `a <= k R` that is below `8 k (|q - c|^2 + R^2)`: a larger `s` has
-//! the right sign, and exact arithmetic decides the others, most of them true ties.
+//! of the places of `c` and `q`. With `A` the largest coordinate of `p`, those of `c` and `q` are
+//! at most `A + R` and `A + R + |q - c|`, so `a <= 4 e' (A + R + |q - c|)`, `e'` being `e` and one
+//! more rounding. Where `4 e' A <= k R` the error of `s` is below `8 k (|q - c|^2 + R^2)`: a larger
+//! `s` has the right sign, and exact arithmetic decides the others, most of them true ties.
 
 /// Least `|D|` for the cube of the longest edge.
 const FLAT: f64 = 1.0 / (1u64 << 20) as f64;
@@ -53,7 +55,8 @@ pub(crate) struct Precision {
     pub(crate) tolerance: f64,
     /// Error in mm of absolute places.
     pub(crate) place: f64,
-    least_radius_squared: f64,
+    /// Least radius for the largest coordinate of a cell's corner.
+    least_radius: f64,
 }
 
 impl Precision {
@@ -63,15 +66,15 @@ impl Precision {
         let relative = 40.0 * difference / FLAT;
         let tolerance = 8.0 * relative;
         // Three coordinates, each rounded again when a centre is added.
-        let place = 4.0 * (difference + f64::EPSILON) * largest;
+        let place = 4.0 * (difference + f64::EPSILON);
         Self {
             tolerance: if tolerance < COARSE {
                 tolerance
             } else {
                 f64::INFINITY
             },
-            place,
-            least_radius_squared: (place / relative) * (place / relative),
+            place: place * largest,
+            least_radius: place / relative,
         }
     }
 
@@ -109,9 +112,12 @@ impl Precision {
         let radius_squared = x * x + y * y + z * z;
         let longest = lu.largest(lv).largest(lw);
         let (solid, cube) = (d * d, longest * longest * longest);
+        let [p, q, r] = corner;
+        let least = self.least_radius * p.abs().max(q.abs()).max(r.abs());
+        let least_squared = least * least;
         let known = |i: usize| {
             solid.0[i] >= FLAT * FLAT * cube.0[i]
-                && radius_squared.0[i] >= self.least_radius_squared
+                && radius_squared.0[i] >= least_squared
                 && SIZES.contains(&longest.0[i])
         };
         let centre = |c: Lane, k: usize| c.0.map(|offset| corner[k] + offset);
@@ -228,19 +234,20 @@ mod tests {
     #[test]
     fn nothing_is_certain_of_flat_tiny_or_coarse_cells() {
         let precision = Precision::new(f64::EPSILON, 1.0);
-        let unknown = |p: &Precision, scale: f64, height: f64| {
+        let unknown = |far: f64, scale: f64, height: f64| {
             let tips = [
-                [0.0; 3],
-                [scale, 0.0, 0.0],
-                [0.0, scale, 0.0],
-                [scale, scale, height],
+                [far, 0.0, 0.0],
+                [far + scale, 0.0, 0.0],
+                [far, scale, 0.0],
+                [far + scale, scale, height],
             ];
-            sphere_of(p, tips).radius_squared.is_nan()
+            sphere_of(&precision, tips).radius_squared.is_nan()
         };
-        assert!(!unknown(&precision, 1.0, 0.1));
-        assert!(unknown(&precision, 1.0, 1e-8));
-        assert!(unknown(&precision, 1e-12, 1e-13));
-        assert!(unknown(&Precision::new(f64::EPSILON, 1e14), 1.0, 0.1));
+        assert!(!unknown(0.0, 1.0, 0.1));
+        assert!(unknown(0.0, 1.0, 1e-8));
+        assert!(unknown(1.0, 1e-9, 1e-10));
+        assert!(!unknown(1e4, 1.0, 0.1));
+        assert!(unknown(1e14, 1.0, 0.1));
         let coarse = Precision::new(1e-8, 1.0);
         let sphere = sphere_of(
             &coarse,
