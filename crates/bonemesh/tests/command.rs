@@ -320,7 +320,7 @@ fn too_few_points_are_refused_with_what_made_them_few() {
     let cloud = folder.path().join("c.xyz");
     fs::write(&cloud, "1 2 3\n".repeat(200)).unwrap();
     let output = bonemesh(&["mesh", text(&cloud), "-o", text(&out)]);
-    assert_refused(&output, "one place");
+    assert_refused(&output, "its own place");
     assert!(!out.exists());
 }
 
