@@ -34,7 +34,7 @@ pub(crate) enum PointSet {
 }
 
 impl PointSet {
-    /// The same points as a cloud.
+    /// The same points as a cloud, free ones on their lattice if they have one along the axes.
     ///
     /// # Errors
     /// Those of the cloud.
