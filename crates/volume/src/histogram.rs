@@ -259,12 +259,10 @@ mod tests {
     use std::num::NonZeroUsize;
 
     fn volume(voxels: Voxels) -> Volume {
+        let shape = voxels.shape();
         let affine = Affine::from_axes([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0; 3]);
-        Volume::new(
-            voxels.clone(),
-            Geometry::new(voxels.shape(), affine).unwrap(),
-        )
-        .unwrap()
+        let geometry = Geometry::new(shape, affine).unwrap();
+        Volume::new(voxels, geometry).unwrap()
     }
 
     fn row<T: Clone>(values: &[T]) -> Array3<T> {
