@@ -1,5 +1,7 @@
 //! The one error of the facade.
 
+use std::path::PathBuf;
+
 use bonemesh_cloud::CloudError;
 use bonemesh_dicom::DicomError;
 use bonemesh_mesh::MeshError;
@@ -69,6 +71,14 @@ pub enum Error {
     /// Points of one place have no neighbour distance.
     #[error("the points lie in one place, so there is no alpha; give points in mm that differ")]
     NoAlpha,
+    /// A picture that cannot be written.
+    #[error("cannot write {path}: {source}; choose another place or name, such as histogram.png")]
+    Picture {
+        /// The file.
+        path: PathBuf,
+        /// What stands against it.
+        source: std::io::Error,
+    },
     /// The worker threads.
     #[error(transparent)]
     Pool(#[from] PoolError),
