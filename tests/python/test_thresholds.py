@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import bonemesh
 import numpy as np
 import pytest
@@ -62,10 +64,23 @@ def parts(hu: np.ndarray, thresholds) -> np.ndarray:
     return sum((hu > t).astype(int) for t in thresholds)
 
 
+def criterion(hu: np.ndarray, thresholds) -> Fraction:
+    """What Otsu's thresholds make as large as can be, exactly."""
+    classes = parts(hu, thresholds)
+    values = [hu[classes == c].astype(np.int64) for c in np.unique(classes)]
+    return sum((Fraction(int(v.sum()) ** 2, v.size) for v in values), Fraction(0))
+
+
+def assert_no_worse(hu: np.ndarray, ours, theirs) -> None:
+    """The same classes, or better ones: scikit-image's sums are of single precision."""
+    differ = parts(hu, ours) != parts(hu, theirs)
+    assert differ.mean() < 1e-3
+    assert not differ.any() or criterion(hu, ours) > criterion(hu, theirs)
+
+
 def test_two_classes_are_those_of_scikit_image(phantom):
-    hu = phantom.hu
     ours = bonemesh.histogram(phantom, bin_hu=1).otsu()
-    assert (parts(hu, ours) == parts(hu, [threshold_otsu(hu)])).all()
+    assert_no_worse(phantom.hu, ours, [threshold_otsu(phantom.hu)])
 
 
 @pytest.mark.parametrize("classes", [2, 3, 4])
@@ -76,7 +91,8 @@ def test_several_classes_are_those_of_scikit_image(phantom, classes):
     upper = found.edges_hu[1:]
     theirs = threshold_multiotsu(classes=classes, hist=(found.counts, upper))
     assert len(ours) == classes - 1
-    assert (parts(phantom.hu, ours) == parts(phantom.hu, theirs)).all()
+    in_bins = np.ceil(phantom.hu / 32).astype(int) * 32
+    assert_no_worse(in_bins, ours, theirs)
 
 
 @pytest.mark.parametrize("classes", [-1, 0, 1, 6, 1 << 70])
@@ -103,7 +119,9 @@ def test_components_are_those_of_scikit_image(part, connectivity):
 
 def test_components_of_bone_are_those_of_scikit_image(phantom):
     bone = phantom.hu > 350
-    assert (bonemesh.label_components(bone) == measure.label(bone, connectivity=3)).all()
+    assert (
+        bonemesh.label_components(bone) == measure.label(bone, connectivity=3)
+    ).all()
 
 
 def test_masks_that_are_none_are_refused():
@@ -127,16 +145,12 @@ def test_bone_in_soft_tissue_is_parted_halfway(phantom):
 
 
 def test_the_presets_are_those_published(volume):
-    values = {
-        s["name"]: s["threshold_hu"] for s in bonemesh.suggest_thresholds(volume)
-    }
+    values = {s["name"]: s["threshold_hu"] for s in bonemesh.suggest_thresholds(volume)}
     assert values["skull"] == 350 and values["cortical"] == 600
 
 
 def test_a_mesh_is_made_with_the_threshold_suggested(volume):
-    [auto] = [
-        s for s in bonemesh.suggest_thresholds(volume) if s["recommended"]
-    ]
+    [auto] = [s for s in bonemesh.suggest_thresholds(volume) if s["recommended"]]
     mesh = bonemesh.render(volume, threshold_hu="auto")
     assert mesh.report["threshold_hu"] == auto["threshold_hu"]
     assert auto["reason"] in mesh.report["threshold_reason"]
