@@ -11,6 +11,9 @@
 //! threads; every failure is one [`Error`] whose message names the file or value and the remedy;
 //! nothing is left half-written.
 //!
+//! The threshold is a setting; [`Settings::auto_threshold`] finds it in the volume, and
+//! [`histogram`] tells what there is to choose from.
+//!
 //! Limits: the surface of method `alpha` is the boundary of a regularised alpha complex. It has
 //! no open edge but can touch itself along edges and vertices, which [`check`] reports.
 //!

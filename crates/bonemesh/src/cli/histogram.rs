@@ -126,7 +126,8 @@ fn in_words(report: &HistogramReport) -> String {
         ));
         line(format!("{:40}{}", "", s.source));
     }
-    line("take one: --hu with auto, the name of a publication's, or any number".to_owned());
+    let names = ThresholdPreset::ALL.map(ThresholdPreset::name).join(", ");
+    line(format!("use one with --hu: auto, {names}, or any number"));
     for warning in &report.warnings {
         line(format!("note: {warning}"));
     }
