@@ -1,5 +1,7 @@
 //! The one error of the facade.
 
+use std::path::PathBuf;
+
 use bonemesh_cloud::CloudError;
 use bonemesh_dicom::DicomError;
 use bonemesh_mesh::MeshError;
@@ -71,6 +73,14 @@ pub enum Error {
         "every point has its nearest neighbours in its own place, so there is no alpha; take repeated points out or set alpha"
     )]
     NoAlpha,
+    /// A picture that cannot be written.
+    #[error("cannot write {path}: {source}; choose another place or name, such as histogram.png")]
+    Picture {
+        /// The file.
+        path: PathBuf,
+        /// What stands against it.
+        source: std::io::Error,
+    },
     /// The worker threads.
     #[error(transparent)]
     Pool(#[from] PoolError),

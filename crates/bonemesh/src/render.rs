@@ -13,6 +13,7 @@ use bonemesh_volume::Volume;
 
 use crate::report::{RenderReport, Seconds, check};
 use crate::source::{Reading, Source};
+use crate::thresholds::chosen;
 use crate::{Error, Sampling, Settings};
 
 /// Neighbours (with the point itself) whose mean distance is the published choice of alpha.
@@ -71,8 +72,10 @@ pub fn point_cloud(
     frame: Frame,
     task: &Task,
 ) -> Result<PointCloud, Error> {
-    pool(settings.threads)?
-        .install(|| volume_to_cloud(volume, settings, frame, &mut Seconds::default(), task))
+    pool(settings.threads)?.install(|| {
+        let settings = &chosen(volume, settings, task)?.of(settings);
+        volume_to_cloud(volume, settings, frame, &mut Seconds::default(), task)
+    })
 }
 
 /// Makes the surface of a point cloud.
@@ -85,10 +88,16 @@ pub fn mesh_cloud(cloud: &PointCloud, settings: &Settings, task: &Task) -> Resul
 
 fn volume_to_mesh(volume: &Volume, settings: &Settings, task: &Task) -> Result<Rendered, Error> {
     let mut seconds = Seconds::default();
+    let mut clock = Instant::now();
+    let chosen = chosen(volume, settings, task)?;
+    let settings = &chosen.of(settings);
+    let threshold_s = lap(&mut clock);
     let cloud = volume_to_cloud(volume, settings, Frame::Patient, &mut seconds, task)?;
+    seconds.edges += threshold_s;
     let mut rendered = cloud_to_mesh(&cloud, settings, seconds, task)?;
     rendered.report.spacing_mm = Some(volume.geometry().spacing_mm());
     rendered.report.threshold_hu = Some(settings.threshold.hu());
+    rendered.report.threshold_reason = chosen.reason;
     Ok(rendered)
 }
 

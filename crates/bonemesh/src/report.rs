@@ -40,6 +40,8 @@ pub struct RenderReport {
     pub method: &'static str,
     /// Bone is strictly above this; `None` for a mesh made of a cloud.
     pub threshold_hu: Option<f64>,
+    /// How the threshold was found, or which preset it is; `None` for any other number.
+    pub threshold_reason: Option<String>,
     /// Canny's smoothing, pixels.
     pub sigma: f64,
     /// `SeriesInstanceUID`, where the volume came from files.
@@ -85,6 +87,7 @@ impl RenderReport {
             version: VERSION,
             method: settings.method.name(),
             threshold_hu: None,
+            threshold_reason: None,
             sigma: settings.canny.sigma(),
             series_uid: None,
             spacing_mm: None,

@@ -59,6 +59,9 @@ pub struct Sampling {
 pub struct Settings {
     /// Bone is strictly above this.
     pub threshold: HuThreshold,
+    /// Finds the threshold in the volume ([`choose_threshold`](crate::choose_threshold)) instead
+    /// of taking `threshold`.
+    pub auto_threshold: bool,
     /// Canny's sigma and thresholds.
     pub canny: CannySettings,
     /// How the surface is made.
@@ -84,6 +87,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             threshold: HuThreshold::new(SKULL_HU).expect("350 is finite: anything else is a bug"),
+            auto_threshold: false,
             canny: CannySettings::default(),
             method: Method::default(),
             alpha_mm: None,

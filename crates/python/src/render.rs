@@ -10,7 +10,7 @@ use crate::cancel::Cancel;
 use crate::detach::{Watch, detached};
 use crate::errors;
 use crate::mesh::Mesh;
-use crate::options::{self, Choice, Crop, Threads};
+use crate::options::{self, Choice, Crop, Threads, Threshold};
 use crate::volume::Volume;
 
 /// What is rendered.
@@ -22,6 +22,8 @@ enum Source {
 /// Make the surface of the bone in a CT folder or volume: `Mesh` in patient millimetres (LPS).
 ///
 /// - `threshold_hu`: bone is strictly above it; 350 suits skulls, 600 the cortical bone of limbs.
+///   "auto" finds it in the volume, a name ("skull", "cortical", "thin-bone", "teeth") takes it
+///   from the literature; `report["threshold_reason"]` says how.
 /// - `method`: "alpha", the boundary of the Delaunay tetrahedra with a circumradius up to alpha.
 /// - `sigma`: Canny's smoothing in pixels.
 /// - `series`: UID or number (1 is the largest) where a folder holds several.
@@ -36,7 +38,7 @@ enum Source {
 /// `Mesh.report` has counts, topology, volume and seconds, as `bonemesh render --json` prints them.
 #[pyfunction]
 #[pyo3(signature = (
-    path_or_volume, *, threshold_hu=350.0, method="alpha", sigma=1.0, series=None,
+    path_or_volume, *, threshold_hu=Threshold::skull(), method="alpha", sigma=1.0, series=None,
     one_series=false, crop=None, sample_percent=None, sampler="uniform", seed=0, alpha_mm=None, threads=None, progress=None,
     cancel=None
 ))]
@@ -44,7 +46,7 @@ enum Source {
 pub(crate) fn render(
     py: Python<'_>,
     path_or_volume: &Bound<'_, PyAny>,
-    threshold_hu: f64,
+    threshold_hu: Threshold,
     method: &str,
     sigma: f64,
     series: Option<Choice>,
@@ -59,8 +61,7 @@ pub(crate) fn render(
     cancel: Option<&Cancel>,
 ) -> PyResult<Mesh> {
     let watch = Watch::new(py, progress, cancel)?;
-    let settings = Settings {
-        threshold: options::threshold(py, threshold_hu)?,
+    let mut settings = Settings {
         canny: options::canny(py, sigma, None)?,
         method: method
             .parse::<Method>()
@@ -71,7 +72,9 @@ pub(crate) fn render(
         one_series,
         sampling: sampling(py, sample_percent, sampler, seed)?,
         threads: Threads::count(threads),
+        ..Settings::default()
     };
+    threshold_hu.set(&mut settings);
     let source = source(path_or_volume, &settings)?;
     detached(py, watch, move |task| {
         let rendered = source.render(&settings, task)?;

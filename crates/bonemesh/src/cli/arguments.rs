@@ -9,11 +9,12 @@ use bonemesh_dicom::SeriesChoice;
 use bonemesh_mesh::{MeshFormat, TriangleMesh};
 use bonemesh_phantom::{ORIENTATIONS, Orientation, Phantom, PhantomError, ScanSettings};
 use bonemesh_roi::{Method as RoiMethod, ThicknessMm};
-use bonemesh_segment::{CannySettings, HuThreshold};
+use bonemesh_segment::CannySettings;
 use bonemesh_volume::CropBox;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::histogram::{HistogramArguments, HuChoice};
 use crate::settings::{Method, Sampling, Settings};
 
 /// Turns a folder of CT images into a mesh of the bone, and a selection on it into a region.
@@ -31,6 +32,8 @@ pub(super) struct Arguments {
 pub(super) enum Command {
     /// List the series in a folder, what was left out, geometry and warnings.
     Info(Info),
+    /// Count how often each Hounsfield value occurs, and suggest thresholds.
+    Histogram(HistogramArguments),
     /// Make the bone's mesh from a folder of CT files.
     Render(Render),
     /// Make the point cloud of the bone's edges from a folder of CT files.
@@ -62,9 +65,10 @@ pub(super) struct Info {
 
 #[derive(Debug, Args)]
 pub(super) struct EdgeArguments {
-    /// Bone is strictly above this Hounsfield value.
-    #[arg(long, default_value = "350", allow_negative_numbers = true, value_parser = hu)]
-    hu: HuThreshold,
+    /// Bone is strictly above this Hounsfield value; or `auto`, or a name that `bonemesh histogram`
+    /// lists, such as skull or cortical.
+    #[arg(long, default_value = "350", allow_negative_numbers = true)]
+    hu: HuChoice,
     /// Canny's smoothing in pixels.
     #[arg(long, default_value = "1.0", allow_negative_numbers = true, value_parser = canny)]
     sigma: CannySettings,
@@ -305,15 +309,21 @@ fn listed(title: &str, names: impl Iterator<Item = (&'static str, &'static str)>
 impl EdgeArguments {
     /// The settings for rendering with `surface`.
     pub(super) fn settings(&self, surface: Option<&SurfaceArguments>) -> Settings {
+        let made = surface.map(SurfaceArguments::settings).unwrap_or_default();
+        let (threshold, auto_threshold) = match self.hu {
+            HuChoice::Auto => (made.threshold, true),
+            HuChoice::Given(threshold) => (threshold, false),
+        };
         Settings {
-            threshold: self.hu,
+            threshold,
+            auto_threshold,
             canny: self.sigma,
             crop: self.crop.clone(),
             series: self.series.clone(),
             one_series: self.one_series,
             sampling: self.sampling.settings(),
             threads: self.threads,
-            ..surface.map(SurfaceArguments::settings).unwrap_or_default()
+            ..made
         }
     }
 }
@@ -347,11 +357,6 @@ fn mesh_file() -> impl TypedValueParser<Value = PathBuf> {
 /// A path, Unicode or not, whose ending names a cloud format.
 fn cloud_file() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|path| CloudFormat::of(&path).map(|_| path))
-}
-
-fn hu(text: &str) -> Result<HuThreshold, String> {
-    let hu = number(text)?;
-    HuThreshold::new(hu).map_err(|e| e.to_string())
 }
 
 fn canny(text: &str) -> Result<CannySettings, String> {

@@ -70,6 +70,13 @@ pub(super) fn rendered(report: &RenderReport, file: &Path) -> String {
         report.points, report.alpha_mm, report.tetrahedra
     ));
     line(format!("  {}", verdict(report.watertight, report.manifold)));
+    if let Some(hu) = report.threshold_hu {
+        text.push_str(&threshold(hu, report.threshold_reason.as_deref()));
+    }
+    let mut line = |l: String| {
+        text.push_str(&l);
+        text.push('\n');
+    };
     let s = &report.seconds;
     line(format!(
         "  {:.2} s: read {:.2}, edges {:.2}, cloud {:.2}, neighbours {:.2}, tetrahedra {:.2}, surface {:.2}, write {:.2}",
@@ -79,6 +86,14 @@ pub(super) fn rendered(report: &RenderReport, file: &Path) -> String {
         line(format!("  note: {warning}"));
     }
     text
+}
+
+/// The threshold, and where it is from.
+pub(super) fn threshold(hu: f64, reason: Option<&str>) -> String {
+    match reason {
+        Some(reason) => format!("  bone above {hu} HU ({reason})\n"),
+        None => format!("  bone above {hu} HU\n"),
+    }
 }
 
 /// `roi`.
