@@ -23,11 +23,13 @@
 //! *Three-dimensional alpha shapes*, 1994.
 
 mod alpha;
+mod isosurface;
 
 pub use alpha::{AlphaSurface, alpha_boundary, alpha_surface, boundary_surface};
 use bonemesh_delaunay::DelaunayError;
 use bonemesh_mesh::MeshError;
 use bonemesh_task::Cancelled;
+pub use isosurface::{IsosurfaceSettings, isosurface};
 
 /// Why no surface could be made, and the remedy.
 #[non_exhaustive]
@@ -50,6 +52,15 @@ pub enum SurfaceError {
         /// The alpha asked for.
         alpha_mm: f64,
     },
+    /// No voxel is bone.
+    #[error("no voxel is above {threshold_hu} HU; lower the threshold")]
+    NothingAbove {
+        /// The threshold asked for.
+        threshold_hu: f64,
+    },
+    /// More vertices than an index can name.
+    #[error("the surface has more than 4 billion vertices; crop the volume")]
+    TooLarge,
     /// Stopped on request.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
