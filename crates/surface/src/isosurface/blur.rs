@@ -59,7 +59,7 @@ impl Blur {
     }
 
     /// Standard deviation along an edge's profile, in voxels.
-    fn along(&self, edge: &Edge) -> f32 {
+    fn along(self, edge: &Edge) -> f32 {
         let across = edge.across_slices * edge.across_slices;
         (self.in_slice + across * (self.across_slices - self.in_slice)).sqrt()
     }

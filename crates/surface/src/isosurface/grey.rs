@@ -1,6 +1,32 @@
 //! Hounsfield units between voxels.
 
 use bonemesh_volume::{Volume, Voxels};
+use ndarray::{CowArray, Ix3};
+
+/// Voxels in the order slice, row, column: a volume's own, or a copy where they are stored in
+/// another order.
+pub(super) enum Ordered<'a> {
+    I16(CowArray<'a, i16, Ix3>),
+    F32(CowArray<'a, f32, Ix3>),
+}
+
+impl<'a> Ordered<'a> {
+    pub(super) fn of(volume: &'a Volume) -> Self {
+        match volume.voxels() {
+            Voxels::I16(hu) => Self::I16(hu.as_standard_layout()),
+            Voxels::F32(hu) => Self::F32(hu.as_standard_layout()),
+        }
+    }
+
+    pub(super) fn grey(&self) -> Grey<'_> {
+        const ORDERED: &str = "the voxels were put in order, else it is a bug";
+        let shape = |(slices, rows, columns): (usize, usize, usize)| [columns, rows, slices];
+        match self {
+            Self::I16(hu) => Grey::I16(hu.as_slice().expect(ORDERED), shape(hu.dim())),
+            Self::F32(hu) => Grey::F32(hu.as_slice().expect(ORDERED), shape(hu.dim())),
+        }
+    }
+}
 
 /// Hounsfield units of a volume, read by column, row, slice.
 #[derive(Clone, Copy)]
@@ -9,17 +35,7 @@ pub(super) enum Grey<'a> {
     F32(&'a [f32], [usize; 3]),
 }
 
-impl<'a> Grey<'a> {
-    /// Of a volume in the standard layout; `None` of any other.
-    pub(super) fn of(volume: &'a Volume) -> Option<Self> {
-        let [slices, rows, columns] = volume.geometry().shape();
-        let shape = [columns, rows, slices];
-        Some(match volume.voxels() {
-            Voxels::I16(hu) => Self::I16(hu.as_slice()?, shape),
-            Voxels::F32(hu) => Self::F32(hu.as_slice()?, shape),
-        })
-    }
-
+impl Grey<'_> {
     /// Columns, rows, slices.
     #[inline]
     pub(super) fn shape(&self) -> [usize; 3] {

@@ -23,7 +23,7 @@ use bonemesh_volume::{Affine, Volume};
 use rayon::prelude::*;
 
 use crate::SurfaceError;
-use grey::Grey;
+use grey::{Grey, Ordered};
 use march::{Rows, cut_edges, triangles};
 use signs::Signs;
 
@@ -53,7 +53,8 @@ pub fn isosurface(
     settings: IsosurfaceSettings,
     task: &Task,
 ) -> Result<TriangleMesh, SurfaceError> {
-    let grey = Grey::of(volume).expect("volumes are made in the standard layout, else a bug");
+    let ordered = Ordered::of(volume);
+    let grey = ordered.grey();
     let threshold = match grey {
         Grey::I16(..) => settings.threshold_hu.floor() + 0.5,
         Grey::F32(..) => settings.threshold_hu,
