@@ -68,6 +68,14 @@ pub enum Error {
         /// Name of the sampler.
         sampler: &'static str,
     },
+    /// A choice that the method has no use for.
+    #[error("{choice} means nothing to the method `{method}`; leave it out, or choose `alpha`")]
+    NotForMethod {
+        /// What was chosen.
+        choice: &'static str,
+        /// Name of the method.
+        method: &'static str,
+    },
     /// Points of one place have no neighbour distance.
     #[error(
         "every point has its nearest neighbours in its own place, so there is no alpha; take repeated points out or set alpha"

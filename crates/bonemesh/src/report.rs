@@ -1,9 +1,7 @@
 //! What is said of a result: plain values with units in their names, ready for JSON.
 
-use bonemesh_cloud::PointCloud;
 use bonemesh_mesh::{Topology, TriangleMesh, check_topology};
 use bonemesh_roi::Region;
-use bonemesh_surface::AlphaSurface;
 use bonemesh_task::Task;
 use serde::Serialize;
 
@@ -48,12 +46,12 @@ pub struct RenderReport {
     pub series_uid: Option<String>,
     /// Distance between columns, rows, slices in mm.
     pub spacing_mm: Option<[f64; 3]>,
-    /// Points that were meshed.
-    pub points: usize,
-    /// Largest circumradius kept.
-    pub alpha_mm: f64,
-    /// Tetrahedra kept.
-    pub tetrahedra: usize,
+    /// Points that were meshed; `None` where a method meshes voxels.
+    pub points: Option<usize>,
+    /// Largest circumradius kept, by the method with alpha.
+    pub alpha_mm: Option<f64>,
+    /// Tetrahedra kept, by the method with alpha.
+    pub tetrahedra: Option<usize>,
     /// Vertices of the mesh.
     pub vertices: usize,
     /// Triangles of the mesh.
@@ -64,7 +62,7 @@ pub struct RenderReport {
     pub manifold: bool,
     /// Parts of the mesh that do not touch.
     pub components: usize,
-    /// Volume inside the mesh, through the centres of the edge pixels.
+    /// Volume inside the mesh; with alpha it goes through the centres of the edge pixels.
     pub volume_mm3: f64,
     /// Seconds of each step.
     pub seconds: Seconds,
@@ -75,14 +73,7 @@ pub struct RenderReport {
 }
 
 impl RenderReport {
-    pub(crate) fn new(
-        settings: &Settings,
-        cloud: &PointCloud,
-        surface: &AlphaSurface,
-        alpha_mm: f64,
-        check: &CheckReport,
-        seconds: Seconds,
-    ) -> Self {
+    pub(crate) fn new(settings: &Settings, check: &CheckReport, seconds: Seconds) -> Self {
         Self {
             version: VERSION,
             method: settings.method.name(),
@@ -91,15 +82,15 @@ impl RenderReport {
             sigma: settings.canny.sigma(),
             series_uid: None,
             spacing_mm: None,
-            points: cloud.points_mm().len(),
-            alpha_mm,
-            tetrahedra: surface.tetrahedra,
+            points: None,
+            alpha_mm: None,
+            tetrahedra: None,
             vertices: check.vertices,
             triangles: check.triangles,
             watertight: check.watertight,
             manifold: check.manifold,
             components: check.components,
-            volume_mm3: surface.volume_mm3,
+            volume_mm3: check.volume_mm3,
             seconds,
             peak_mib: peak_mib(),
             warnings: Vec::new(),

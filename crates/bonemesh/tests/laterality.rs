@@ -190,7 +190,7 @@ fn edges_found_in_the_planes_of_storage_are_others() {
 fn the_default_alpha_does_not_depend_on_the_order_either() {
     let alpha = |volume: &Volume| {
         let rendered = render_volume(volume, &halfway(), &Task::default()).unwrap();
-        rendered.report.alpha_mm
+        rendered.report.alpha_mm.unwrap()
     };
     let expected = alpha(&known("axial").0);
     for name in ["feet-first", "sagittal", "decubitus-left"] {

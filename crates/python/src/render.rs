@@ -24,13 +24,16 @@ enum Source {
 /// - `threshold_hu`: bone is strictly above it; 350 suits skulls, 600 the cortical bone of limbs.
 ///   "auto" finds it in the volume, a name ("skull", "cortical", "thin-bone", "teeth") takes it
 ///   from the literature; `report["threshold_reason"]` says how.
-/// - `method`: "alpha", the boundary of the Delaunay tetrahedra with a circumradius up to alpha.
+/// - `method`: "alpha", the boundary of the Delaunay tetrahedra of edge points with a circumradius
+///   up to alpha, or "isosurface", the closed surface between voxels.
 /// - `sigma`: Canny's smoothing in pixels.
 /// - `series`: UID or number (1 is the largest) where a folder holds several.
 /// - `one_series`: all slices that fit together are one series, whatever UIDs they name.
 /// - `crop`: "I0:I1,J0:J1,K0:K1" or three pairs: columns, rows, slices, from 0, ends not included.
 /// - `sample_percent`, `sampler`, `seed`: use only a part of the points; None uses all.
 /// - `alpha_mm`: largest circumradius; None takes the mean distance to 100 neighbours.
+/// - `true_edges`: an isosurface lies at the true edges of the bone, else where the grey equals the
+///   threshold.
 /// - `threads`: worker threads; None is one a core. The result does not depend on it.
 /// - `progress`: called as `progress(stage, fraction)` on this thread.
 /// - `cancel`: a `Cancel` that stops the work.
@@ -39,7 +42,7 @@ enum Source {
 #[pyfunction]
 #[pyo3(signature = (
     path_or_volume, *, threshold_hu=Threshold::skull(), method="alpha", sigma=1.0, series=None,
-    one_series=false, crop=None, sample_percent=None, sampler="uniform", seed=0, alpha_mm=None, threads=None, progress=None,
+    one_series=false, crop=None, sample_percent=None, sampler="uniform", seed=0, alpha_mm=None, true_edges=true, threads=None, progress=None,
     cancel=None
 ))]
 #[allow(clippy::too_many_arguments)] // keyword arguments, as Python has them
@@ -56,6 +59,7 @@ pub(crate) fn render(
     sampler: &str,
     seed: i128,
     alpha_mm: Option<f64>,
+    true_edges: bool,
     threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
     cancel: Option<&Cancel>,
@@ -67,6 +71,7 @@ pub(crate) fn render(
             .parse::<Method>()
             .map_err(|e| errors::unusable(py, e))?,
         alpha_mm,
+        true_edges,
         crop: crop.map(|c| c.0),
         series: series.map(|s| s.0),
         one_series,

@@ -109,6 +109,9 @@ pub(super) struct SurfaceArguments {
     /// Largest circumradius kept in mm [default: mean distance to 100 neighbours].
     #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = length_mm)]
     alpha: Option<f64>,
+    /// Puts an isosurface where the grey equals the threshold, not at the true edges of the bone.
+    #[arg(long)]
+    at_threshold: bool,
 }
 
 #[derive(Debug, Args)]
@@ -344,6 +347,7 @@ impl SurfaceArguments {
         Settings {
             method: self.method,
             alpha_mm: self.alpha,
+            true_edges: !self.at_threshold,
             ..Settings::default()
         }
     }

@@ -65,10 +65,13 @@ pub(super) fn rendered(report: &RenderReport, file: &Path) -> String {
         report.components,
         report.volume_mm3 / MM3_PER_CM3
     ));
-    line(format!(
-        "  {} points, alpha {:.3} mm, {} tetrahedra",
-        report.points, report.alpha_mm, report.tetrahedra
-    ));
+    if let (Some(points), Some(alpha_mm), Some(tetrahedra)) =
+        (report.points, report.alpha_mm, report.tetrahedra)
+    {
+        line(format!(
+            "  {points} points, alpha {alpha_mm:.3} mm, {tetrahedra} tetrahedra"
+        ));
+    }
     line(format!("  {}", verdict(report.watertight, report.manifold)));
     if let Some(hu) = report.threshold_hu {
         text.push_str(&threshold(hu, report.threshold_reason.as_deref()));
