@@ -30,12 +30,20 @@
 //! feature extraction for 2D/3D objects in mesh representation* (2001).
 
 mod error;
+mod exact;
+mod intersections;
 mod io;
 mod merge;
 mod mesh;
+mod thickness;
 mod topology;
+mod tree;
+mod vector;
 
 pub use error::MeshError;
+pub use intersections::{Intersection, Intersections, find_intersections};
 pub use io::{MeshFormat, check_target, read_mesh, write_mesh};
 pub use mesh::TriangleMesh;
+pub use thickness::{WallThickness, wall_thickness};
 pub use topology::{Topology, check_topology};
+pub use tree::TriangleTree;

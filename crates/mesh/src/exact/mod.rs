@@ -1,0 +1,58 @@
+//! Exact answers about points, segments and triangles whose coordinates are doubles.
+//!
+//! Everything rests on the signs of two determinants, which Shewchuk's adaptive arithmetic gives
+//! without error as long as no product of three differences leaves the range of a double: always
+//! for coordinates that are 32-bit floats, and for others from 1e-90 to 1e90 mm or 0.
+
+#![expect(
+    clippy::float_cmp,
+    reason = "0 means exactly on the plane or line, and only equal corners are the same"
+)]
+
+mod meet;
+mod place;
+mod plane;
+mod segment;
+
+use robust::{Coord3D, orient3d};
+
+pub(crate) use meet::meet;
+pub(crate) use place::place;
+pub(crate) use plane::has_area;
+
+/// A place in mm.
+pub(crate) type Point = [f64; 3];
+
+/// The corners of a triangle; except for [`has_area`], of one that has an area.
+pub(crate) type Corners = [Point; 3];
+
+/// Above 0 on one side of the plane through `a`, `b`, `c`, below 0 on the other, 0 on it.
+#[inline]
+fn side(a: &Point, b: &Point, c: &Point, point: &Point) -> f64 {
+    let [a, b, c, d] = [a, b, c, point].map(|&[x, y, z]| Coord3D { x, y, z });
+    orient3d(a, b, c, d)
+}
+
+/// The side of a triangle's plane on which each of some points lies.
+#[inline]
+fn sides<const N: usize>([a, b, c]: &Corners, points: [&Point; N]) -> [f64; N] {
+    points.map(|point| side(a, b, c, point))
+}
+
+/// Whether all values are above 0 or all below.
+#[inline]
+fn is_one_sided(values: &[f64]) -> bool {
+    values.iter().all(|v| *v > 0.0) || values.iter().all(|v| *v < 0.0)
+}
+
+/// Whether one value is above 0 and another below.
+#[inline]
+fn is_two_sided(values: [f64; 3]) -> bool {
+    values.iter().any(|v| *v > 0.0) && values.iter().any(|v| *v < 0.0)
+}
+
+/// The edges of a triangle.
+#[inline]
+fn edges([a, b, c]: &Corners) -> [[&Point; 2]; 3] {
+    [[a, b], [b, c], [c, a]]
+}
