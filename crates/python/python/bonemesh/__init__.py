@@ -43,6 +43,7 @@ from bonemesh._native import (
     scan,
     select_roi,
     tetrahedralize,
+    wall_thickness,
     write_phantom,
 )
 
@@ -74,5 +75,6 @@ __all__ = [
     "scan",
     "select_roi",
     "tetrahedralize",
+    "wall_thickness",
     "write_phantom",
 ]

@@ -36,6 +36,7 @@ __all__ = [
     "scan",
     "select_roi",
     "tetrahedralize",
+    "wall_thickness",
     "write_phantom",
 ]
 
@@ -302,6 +303,12 @@ def check(
     progress: _Progress | None = None,
     cancel: Cancel | None = None,
 ) -> dict[str, Any]: ...
+def wall_thickness(
+    mesh: Mesh,
+    *,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> npt.NDArray[np.float64]: ...
 def phantom(
     name: str,
     *,
