@@ -286,13 +286,11 @@ fn what_would_fill_the_memory_is_refused() {
             .contains("200 times")
     );
     // Thirty objects, each twice in the next: a billion copies.
-    let mut doubling = OBJECT.to_owned();
-    for id in 2..32 {
+    let doubles = (2..32).map(|id| {
         let component = format!("<component objectid=\"{}\"/>", id - 1);
-        doubling += &format!(
-            "<object id=\"{id}\"><components>{component}{component}</components></object>"
-        );
-    }
+        format!("<object id=\"{id}\"><components>{component}{component}</components></object>")
+    });
+    let doubling: String = std::iter::once(OBJECT.to_owned()).chain(doubles).collect();
     let error = read_model(&model("", &doubling, "<item objectid=\"31\"/>")).unwrap_err();
     assert!(matches!(error, MeshError::Malformed { .. }), "{error}");
 }

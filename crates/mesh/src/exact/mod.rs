@@ -29,6 +29,10 @@ pub(crate) type Corners = [Point; 3];
 /// Above 0 on one side of the plane through `a`, `b`, `c`, below 0 on the other, 0 on it.
 #[inline]
 fn side(a: &Point, b: &Point, c: &Point, point: &Point) -> f64 {
+    // Triangles within one slice are many, and the exact arithmetic takes longest to find 0.
+    if (0..3).any(|i| a[i] == b[i] && b[i] == c[i] && c[i] == point[i]) {
+        return 0.0;
+    }
     let [a, b, c, d] = [a, b, c, point].map(|&[x, y, z]| Coord3D { x, y, z });
     orient3d(a, b, c, d)
 }
