@@ -24,7 +24,8 @@ def ours(body: trimesh.Trimesh) -> bonemesh.Mesh:
 
 
 def manifold(mesh: bonemesh.Mesh) -> manifold3d.Manifold:
-    return manifold3d.Manifold(manifold3d.Mesh(mesh.vertices, mesh.triangles))
+    vertices, triangles = mesh.vertices.copy(), mesh.triangles.copy()
+    return manifold3d.Manifold(manifold3d.Mesh(vertices, triangles))
 
 
 def as_trimesh(mesh: bonemesh.Mesh) -> trimesh.Trimesh:
@@ -94,9 +95,9 @@ def through(
         for i in range(3):
             p, q = corners[i], corners[(i + 1) % 3]
             from_p, from_q = (np.einsum("ij,ij->i", normal, x - a) for x in (p, q))
-            with np.errstate(divide="ignore", invalid="ignore"):
-                place = p + (from_p / (from_p - from_q))[:, None] * (q - p)
             inside = from_p * from_q < 0
+            share = from_p / np.where(inside, from_p - from_q, 1)
+            place = p + share[:, None] * (q - p)
             for u, v in ((a, b), (b, c), (c, a)):
                 side = np.cross(v - u, place - u)
                 inside &= np.einsum("ij,ij->i", normal, side) > 0

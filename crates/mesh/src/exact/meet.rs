@@ -2,7 +2,7 @@
 
 use super::plane::Shadow;
 use super::segment::hits;
-use super::{Corners, edges, is_one_sided, side, sides};
+use super::{Corners, Point, is_one_sided, side, three_sides, two_sides};
 
 /// Whether two triangles share more than a corner or an edge that both have.
 ///
@@ -13,8 +13,8 @@ use super::{Corners, edges, is_one_sided, side, sides};
 ///   the corner; so they share more exactly if one of these two edges meets the other triangle;
 /// - 0: what they share ends at an edge of one of them, so an edge of one meets the other.
 pub(crate) fn meet(a: &Corners, b: &Corners) -> bool {
-    let common: [Option<usize>; 3] = a.map(|corner| b.iter().position(|other| *other == corner));
-    match common {
+    let common = |corner: &Point| b.iter().position(|other| other == corner);
+    match [common(&a[0]), common(&a[1]), common(&a[2])] {
         [Some(_), Some(_), Some(_)] => true,
         [Some(i), Some(j), None] => folded(a, 2, b, 3 - i - j),
         [Some(i), None, Some(j)] => folded(a, 1, b, 3 - i - j),
@@ -28,7 +28,12 @@ pub(crate) fn meet(a: &Corners, b: &Corners) -> bool {
 
 /// The triangle with the corner `first` as its first.
 fn turned(corners: &Corners, first: usize) -> Corners {
-    [0, 1, 2].map(|step| corners[(first + step) % 3])
+    let [a, b, c] = *corners;
+    match first {
+        0 => [a, b, c],
+        1 => [b, c, a],
+        _ => [c, a, b],
+    }
 }
 
 /// Whether triangles with a common edge, opposite the corners `i` of `a` and `j` of `b`, overlap.
@@ -45,11 +50,11 @@ fn folded(a: &Corners, i: usize, b: &Corners, j: usize) -> bool {
 
 /// Whether triangles whose first corner is the same share more than it.
 fn beyond_corner(a: &Corners, b: &Corners) -> bool {
-    let of_b = sides(a, [&b[1], &b[2]]);
+    let of_b = two_sides(a, [&b[1], &b[2]]);
     if is_one_sided(&of_b) {
         return false;
     }
-    let of_a = sides(b, [&a[1], &a[2]]);
+    let of_a = two_sides(b, [&a[1], &a[2]]);
     if is_one_sided(&of_a) {
         return false;
     }
@@ -58,11 +63,11 @@ fn beyond_corner(a: &Corners, b: &Corners) -> bool {
 
 /// Whether triangles without a common corner share a point.
 fn apart_meet(a: &Corners, b: &Corners) -> bool {
-    let of_b = sides(a, [&b[0], &b[1], &b[2]]);
+    let of_b = three_sides(a, b);
     if is_one_sided(&of_b) {
         return false;
     }
-    let of_a = sides(b, [&a[0], &a[1], &a[2]]);
+    let of_a = three_sides(b, a);
     if is_one_sided(&of_a) {
         return false;
     }
@@ -71,7 +76,6 @@ fn apart_meet(a: &Corners, b: &Corners) -> bool {
 
 /// Whether an edge of `from`, whose corners lie on these `sides` of `to`'s plane, meets `to`.
 fn any_edge_hits(from: &Corners, [i, j, k]: [f64; 3], to: &Corners) -> bool {
-    let pairs = [[i, j], [j, k], [k, i]];
-    let mut both = edges(from).into_iter().zip(pairs);
-    both.any(|(edge, sides)| hits(edge, sides, to))
+    let [p, q, r] = from;
+    hits([p, q], [i, j], to) || hits([q, r], [j, k], to) || hits([r, p], [k, i], to)
 }

@@ -30,17 +30,28 @@ pub(crate) type Corners = [Point; 3];
 #[inline]
 fn side(a: &Point, b: &Point, c: &Point, point: &Point) -> f64 {
     // Triangles within one slice are many, and the exact arithmetic takes longest to find 0.
-    if (0..3).any(|i| a[i] == b[i] && b[i] == c[i] && c[i] == point[i]) {
+    let is_flat_along = |i: usize| a[i] == point[i] && b[i] == point[i] && c[i] == point[i];
+    if is_flat_along(2) || is_flat_along(1) || is_flat_along(0) {
         return 0.0;
     }
-    let [a, b, c, d] = [a, b, c, point].map(|&[x, y, z]| Coord3D { x, y, z });
-    orient3d(a, b, c, d)
+    orient3d(coord(a), coord(b), coord(c), coord(point))
 }
 
-/// The side of a triangle's plane on which each of some points lies.
 #[inline]
-fn sides<const N: usize>([a, b, c]: &Corners, points: [&Point; N]) -> [f64; N] {
-    points.map(|point| side(a, b, c, point))
+fn coord(&[x, y, z]: &Point) -> Coord3D<f64> {
+    Coord3D { x, y, z }
+}
+
+/// The side of a triangle's plane on which each of two points lies.
+#[inline]
+fn two_sides([a, b, c]: &Corners, [p, q]: [&Point; 2]) -> [f64; 2] {
+    [side(a, b, c, p), side(a, b, c, q)]
+}
+
+/// The side of a triangle's plane on which each corner of another lies.
+#[inline]
+fn three_sides([a, b, c]: &Corners, [p, q, r]: &Corners) -> [f64; 3] {
+    [side(a, b, c, p), side(a, b, c, q), side(a, b, c, r)]
 }
 
 /// Whether all values are above 0 or all below.
@@ -51,8 +62,8 @@ fn is_one_sided(values: &[f64]) -> bool {
 
 /// Whether one value is above 0 and another below.
 #[inline]
-fn is_two_sided(values: [f64; 3]) -> bool {
-    values.iter().any(|v| *v > 0.0) && values.iter().any(|v| *v < 0.0)
+fn is_two_sided([u, v, w]: [f64; 3]) -> bool {
+    (u > 0.0 || v > 0.0 || w > 0.0) && (u < 0.0 || v < 0.0 || w < 0.0)
 }
 
 /// The edges of a triangle.

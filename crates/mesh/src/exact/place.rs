@@ -2,7 +2,7 @@
 
 use super::plane::Shadow;
 use super::segment::hits;
-use super::{Corners, Point, edges, sides};
+use super::{Corners, Point, edges, two_sides};
 
 /// A place (mm, rounded) that two triangles share: the mean of the points where an edge of one
 /// meets the other. The triangles must share a point.
@@ -29,7 +29,7 @@ pub(crate) fn place(a: &Corners, b: &Corners) -> Point {
 /// it and their crossings of its edges.
 fn collect(from: &Corners, to: &Corners, points: &mut Vec<Point>) {
     for [p, q] in edges(from) {
-        let ends = sides(to, [p, q]);
+        let ends = two_sides(to, [p, q]);
         if ends == [0.0; 2] {
             let Some(shadow) = Shadow::of(to) else { return };
             points.extend([p, q].into_iter().filter(|end| shadow.holds(to, end)));

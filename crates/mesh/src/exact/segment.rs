@@ -14,7 +14,8 @@ pub(super) fn hits([p, q]: [&Point; 2], sides: [f64; 2], triangle: &Corners) -> 
     }
     // The line goes through the plane in one point, which is in the triangle if the line passes
     // no two edges on different sides.
-    !is_two_sided(edges(triangle).map(|[a, b]| side(p, q, a, b)))
+    let [a, b, c] = triangle;
+    !is_two_sided([side(p, q, a, b), side(p, q, b, c), side(p, q, c, a)])
 }
 
 /// [`hits`] for a segment in the triangle's plane: one end is inside or an edge is crossed.

@@ -3,6 +3,10 @@
 use crate::tree::{Bounds, TriangleTree};
 use crate::vector::{Vector, cross, dot, minus};
 
+/// Part of a triangle's size by which it is taken for larger, so that a ray through a common corner or
+/// edge does not slip between the neighbours by rounding.
+const SLACK: f64 = 1e-9;
+
 /// A ray from a vertex.
 pub(super) struct Ray {
     origin: Vector,
@@ -64,7 +68,8 @@ impl Ray {
         let across = cross(from_a, ab);
         let v = dot(self.direction, across) / determinant;
         let distance_mm = dot(ac, across) / determinant;
-        (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance_mm > 0.0).then_some(distance_mm)
+        let is_inside = u >= -SLACK && v >= -SLACK && u + v <= 1.0 + SLACK;
+        (is_inside && distance_mm > 0.0).then_some(distance_mm)
     }
 }
 
