@@ -31,6 +31,7 @@
 //! The method is that of E. Rier, *Generation and segmentation of 3D models of bone from CT
 //! images based on 3D point clouds*, MASc thesis, McMaster University.
 
+mod check;
 pub mod cli;
 mod error;
 mod memory;
@@ -43,12 +44,13 @@ mod settings;
 mod source;
 mod thresholds;
 
+pub use check::{Place, PrintCheck, check, wall_thickness};
 pub use error::Error;
 pub use panics::hush_foreign_panics;
 pub use picture::{check_picture_target, write_histogram};
 pub use region::{RegionRequest, RegionResult, select_roi};
 pub use render::{Rendered, mesh_cloud, point_cloud, render, render_volume};
-pub use report::{CheckReport, RegionReport, RenderReport, Seconds, check};
+pub use report::{CheckReport, RegionReport, RenderReport, Seconds};
 pub use settings::{Method, Sampling, Settings};
 pub use source::{Contents, Reading, Source};
 pub use thresholds::{
@@ -61,7 +63,10 @@ pub use bonemesh_cloud::{
 };
 pub use bonemesh_delaunay::{DelaunayError, Points, Tetrahedra, tetrahedralize};
 pub use bonemesh_dicom::{DicomError, Gap, LeftOut, SeriesChoice, SeriesReport};
-pub use bonemesh_mesh::{MeshError, TriangleMesh, check_target, read_mesh, write_mesh};
+pub use bonemesh_mesh::{
+    Intersection, Intersections, MeshError, TriangleMesh, TriangleTree, check_target,
+    find_intersections, read_mesh, write_mesh,
+};
 pub use bonemesh_phantom::{
     Phantom, PhantomError, ScanSettings, WrittenPhantom, model_images, scan as scan_phantom,
     write_phantom,

@@ -216,10 +216,7 @@ impl From<Topology> for CheckReport {
     }
 }
 
-/// Looks at the topology of `mesh`.
-///
-/// # Errors
-/// [`Error::Cancelled`].
-pub fn check(mesh: &TriangleMesh, task: &Task) -> Result<CheckReport, Error> {
+/// Looks at the topology of `mesh`; cheap enough for every mesh that is made.
+pub(crate) fn check(mesh: &TriangleMesh, task: &Task) -> Result<CheckReport, Error> {
     Ok(check_topology(mesh, task)?.into())
 }

@@ -299,9 +299,9 @@ fn triangles_face_outward_in_grids_of_either_hand() {
         let mesh = read_mesh(&stl, &Task::default()).unwrap();
         let report = bonemesh::check(&mesh, &Task::default()).unwrap();
         assert!(
-            report.volume_mm3 > 20_000.0,
+            report.topology.volume_mm3 > 20_000.0,
             "{name}: {}",
-            report.volume_mm3
+            report.topology.volume_mm3
         );
         let outward = mesh.triangles().iter().filter(|t| {
             let [a, b, c] = mesh.corners_mm(**t);

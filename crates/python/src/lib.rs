@@ -39,7 +39,7 @@ mod _native {
     #[pymodule_export]
     use crate::cancel::Cancel;
     #[pymodule_export]
-    use crate::check::check;
+    use crate::check::{check, wall_thickness};
     #[pymodule_export]
     use crate::cloud::{mean_neighbour_distance, point_cloud, sample};
     #[pymodule_export]

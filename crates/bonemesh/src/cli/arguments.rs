@@ -42,9 +42,9 @@ pub(super) enum Command {
     Mesh(MeshArguments),
     /// Take the region under selected vertices out of a mesh.
     Roi(Roi),
-    /// Check the topology of a mesh: watertight, manifold, winding, components, volume.
+    /// Check whether a mesh can be printed: closed, manifold, no self-intersections, thinnest wall.
     Check {
-        /// Mesh file (.stl, .ply).
+        /// Mesh file (.stl, .ply, .obj, .3mf).
         mesh: PathBuf,
     },
     /// Write a phantom as a DICOM CT series, with its truth beside it.
@@ -118,7 +118,7 @@ pub(super) struct SurfaceArguments {
 pub(super) struct Render {
     /// Folder of CT files (sub-folders are searched too), or one NIfTI, NRRD or multi-frame file.
     pub(super) directory: PathBuf,
-    /// Mesh file to write (.stl, .ply).
+    /// Mesh file to write (.stl, .ply, .obj, .3mf).
     #[arg(short, long, value_parser = mesh_file())]
     pub(super) output: PathBuf,
     #[command(flatten)]
@@ -162,7 +162,7 @@ impl From<FrameName> for Frame {
 pub(super) struct MeshArguments {
     /// Cloud file (.npy, .ply, .xyz).
     pub(super) cloud: PathBuf,
-    /// Mesh file to write (.stl, .ply).
+    /// Mesh file to write (.stl, .ply, .obj, .3mf).
     #[arg(short, long, value_parser = mesh_file())]
     pub(super) output: PathBuf,
     #[command(flatten)]
@@ -174,14 +174,14 @@ pub(super) struct MeshArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct Roi {
-    /// Mesh file (.stl, .ply).
+    /// Mesh file (.stl, .ply, .obj, .3mf).
     pub(super) mesh: PathBuf,
     #[command(flatten)]
     pub(super) selection: Selection,
     /// How deep the region reaches below the selection, in mm.
     #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = thickness)]
     pub(super) thickness: ThicknessMm,
-    /// Mesh file to write (.stl, .ply).
+    /// Mesh file to write (.stl, .ply, .obj, .3mf).
     #[arg(short, long, value_parser = mesh_file())]
     pub(super) output: PathBuf,
     /// How the region is found.

@@ -47,6 +47,7 @@ from bonemesh._native import (
     select_roi,
     suggest_thresholds,
     tetrahedralize,
+    wall_thickness,
     write_phantom,
 )
 
@@ -82,5 +83,6 @@ __all__ = [
     "select_roi",
     "suggest_thresholds",
     "tetrahedralize",
+    "wall_thickness",
     "write_phantom",
 ]

@@ -40,6 +40,7 @@ __all__ = [
     "select_roi",
     "suggest_thresholds",
     "tetrahedralize",
+    "wall_thickness",
     "write_phantom",
 ]
 
@@ -350,6 +351,12 @@ def check(
     progress: _Progress | None = None,
     cancel: Cancel | None = None,
 ) -> dict[str, Any]: ...
+def wall_thickness(
+    mesh: Mesh,
+    *,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> npt.NDArray[np.float64]: ...
 def phantom(
     name: str,
     *,
