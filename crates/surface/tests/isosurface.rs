@@ -1,6 +1,6 @@
 //! Promises of isosurfaces, on volumes whose truth is a formula.
 
-use bonemesh_mesh::{TriangleMesh, check_topology};
+use bonemesh_mesh::{TriangleMesh, TriangleTree, check_topology, find_intersections};
 use bonemesh_surface::{IsosurfaceSettings, SurfaceError, isosurface};
 use bonemesh_task::{Task, pool};
 use bonemesh_volume::{Affine, Geometry, Volume, Voxels};
@@ -60,6 +60,16 @@ fn assert_is_closed(mesh: &TriangleMesh) {
     assert_eq!(topology.degenerate_triangles, 0);
     assert_eq!(topology.unused_vertices, 0);
     assert!(topology.volume_mm3 > 0.0);
+    assert_passes_through_itself_nowhere(mesh);
+}
+
+/// Judged as a file would hold it, in 32-bit coordinates.
+fn assert_passes_through_itself_nowhere(mesh: &TriangleMesh) {
+    let written = mesh.as_written().unwrap();
+    assert_eq!(written.vertices_mm().len(), mesh.vertices_mm().len());
+    let tree = TriangleTree::new(&written, &Task::default()).unwrap();
+    let found = find_intersections(&tree, 3, &Task::default()).unwrap();
+    assert_eq!(found.count, 0, "{:?}", found.pairs);
 }
 
 fn length([x, y, z]: [f64; 3]) -> f64 {
@@ -112,7 +122,10 @@ fn thin_walls_keep_their_thickness() {
     // Two pixels, whose blurred peak is 986 HU.
     for threshold_hu in [200.0, 350.0, 490.0] {
         let thickness = wall_thickness(1.0, threshold_hu);
-        assert!((thickness - 1.0).abs() < 0.15, "{threshold_hu} HU: {thickness}");
+        assert!(
+            (thickness - 1.0).abs() < 0.15,
+            "{threshold_hu} HU: {thickness}"
+        );
     }
     let thickness = wall_thickness(3.0, 350.0);
     assert!((thickness - 3.0).abs() < 0.03, "{thickness}");
