@@ -20,6 +20,11 @@ METHODS = [
         "Alpha",
         "3D Delaunay tetrahedra of the edge points, those no larger than alpha kept; alpha comes from the points' mean distance",
     ),
+    (
+        "isosurface",
+        "Isosurface",
+        "Closed surface between voxels at the true edges of the bone, nearly whatever the threshold",
+    ),
 ]
 SAMPLERS = [
     ("uniform", "Uniform", "Points at even steps along each contour"),

@@ -173,7 +173,7 @@ def from_phantoms(bonemesh: str, corpus: Corpus, scratch: Path) -> None:
     corpus.add("dicom_file", "phantom-deflated", two(deflated(first), deflated(second)))
     corpus.add("dicom_file", "phantom-bare", bytes(2) + first[data_set_begin(first) :])
     for target, command, kinds in [
-        ("mesh_file", "render", ["stl", "ply"]),
+        ("mesh_file", "render", ["stl", "ply", "obj", "3mf"]),
         ("cloud_file", "cloud", ["npy", "ply", "xyz"]),
     ]:
         for kind, ending in enumerate(kinds):
@@ -185,6 +185,7 @@ def from_phantoms(bonemesh: str, corpus: Corpus, scratch: Path) -> None:
 def by_hand(corpus: Corpus) -> None:
     corpus.add("mesh_file", "text-stl", b"\0" + STL)
     corpus.add("mesh_file", "text-ply", b"\1" + PLY)
+    corpus.add("mesh_file", "text-obj", b"\2v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 -2 3//3\n")
     corpus.add("cloud_file", "text-ply", b"\1" + PLY)
     corpus.add("cloud_file", "text-xyz", b"\2# cloud\n1 2 3 4\n-1e3 .5 0\n")
     corpus.add("frame", "jpeg-ls", frame(SYNTAXES[5], 4, 4, 8, 0, JPEG_LS))

@@ -1,5 +1,7 @@
 //! The one error of the facade.
 
+use std::path::PathBuf;
+
 use bonemesh_cloud::CloudError;
 use bonemesh_dicom::DicomError;
 use bonemesh_mesh::MeshError;
@@ -66,11 +68,27 @@ pub enum Error {
         /// Name of the sampler.
         sampler: &'static str,
     },
+    /// A choice that the method has no use for.
+    #[error("{choice} means nothing to the method `{method}`; leave it out, or choose `alpha`")]
+    NotForMethod {
+        /// What was chosen.
+        choice: &'static str,
+        /// Name of the method.
+        method: &'static str,
+    },
     /// Points of one place have no neighbour distance.
     #[error(
         "every point has its nearest neighbours in its own place, so there is no alpha; take repeated points out or set alpha"
     )]
     NoAlpha,
+    /// A picture that cannot be written.
+    #[error("cannot write {path}: {source}; choose another place or name, such as histogram.png")]
+    Picture {
+        /// The file.
+        path: PathBuf,
+        /// What stands against it.
+        source: std::io::Error,
+    },
     /// The worker threads.
     #[error(transparent)]
     Pool(#[from] PoolError),

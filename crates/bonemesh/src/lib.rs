@@ -11,6 +11,9 @@
 //! threads; every failure is one [`Error`] whose message names the file or value and the remedy;
 //! nothing is left half-written.
 //!
+//! The threshold is a setting; [`Settings::auto_threshold`] finds it in the volume, and
+//! [`histogram`] tells what there is to choose from.
+//!
 //! Limits: the surface of method `alpha` is the boundary of a regularised alpha complex. It has
 //! no open edge but can touch itself along edges and vertices, which [`check`] reports.
 //!
@@ -28,41 +31,58 @@
 //! The method is that of E. Rier, *Generation and segmentation of 3D models of bone from CT
 //! images based on 3D point clouds*, MASc thesis, McMaster University.
 
+mod check;
 pub mod cli;
 mod error;
 mod memory;
 mod panics;
+mod picture;
 mod region;
 mod render;
 mod report;
 mod settings;
 mod source;
+mod thresholds;
 
+pub use check::{Place, PrintCheck, check, wall_thickness};
 pub use error::Error;
 pub use panics::hush_foreign_panics;
+pub use picture::{check_picture_target, write_histogram};
 pub use region::{RegionRequest, RegionResult, select_roi};
 pub use render::{Rendered, mesh_cloud, point_cloud, render, render_volume};
-pub use report::{CheckReport, RegionReport, RenderReport, Seconds, check};
+pub use report::{CheckReport, RegionReport, RenderReport, Seconds};
 pub use settings::{Method, Sampling, Settings};
 pub use source::{Contents, Reading, Source};
+pub use thresholds::{
+    ChosenThreshold, HistogramReport, HistogramRequest, SuggestionReport, choose_threshold,
+    histogram, histogram_of,
+};
 
 pub use bonemesh_cloud::{
     CloudError, Frame, Percent, PointCloud, Sampler, mean_neighbour_distance, sample,
 };
 pub use bonemesh_delaunay::{DelaunayError, Points, Tetrahedra, tetrahedralize};
 pub use bonemesh_dicom::{DicomError, Gap, LeftOut, SeriesChoice, SeriesReport};
-pub use bonemesh_mesh::{MeshError, TriangleMesh, check_target, read_mesh, write_mesh};
+pub use bonemesh_mesh::{
+    Intersection, Intersections, MeshError, TriangleMesh, TriangleTree, check_target,
+    find_intersections, read_mesh, write_mesh,
+};
 pub use bonemesh_phantom::{
     Phantom, PhantomError, ScanSettings, WrittenPhantom, model_images, scan as scan_phantom,
     write_phantom,
 };
 pub use bonemesh_roi::{Method as RoiMethod, RoiError, ThicknessMm};
 pub use bonemesh_segment::{
-    CannySettings, HuThreshold, SegmentError, canny, detect_edges, threshold,
+    CannySettings, Components, Connectivity, EdgeThreshold, HuThreshold, LocalThreshold, Mask,
+    SegmentError, Suggestion, Suggestions, ThresholdPreset, canny, connected_components,
+    detect_edges, edge_threshold, grow_region, hysteresis_threshold, largest_component,
+    local_threshold, multi_otsu, otsu, suggest_thresholds, threshold,
 };
 pub use bonemesh_surface::{SurfaceError, alpha_surface};
 pub use bonemesh_task::{Cancel, Cancelled, Progress, Task, pool};
-pub use bonemesh_volume::{Affine, CropBox, CropError, Geometry, Volume, VolumeError, Voxels};
+pub use bonemesh_volume::{
+    Affine, CropBox, CropError, Geometry, Histogram, Volume, VolumeError, Voxels,
+};
 pub use bonemesh_volume_file::VolumeFileError;
 
 /// The version of this program, written into reports and objects.

@@ -7,13 +7,14 @@ use std::time::Instant;
 use bonemesh_cloud::{Frame, PointCloud, extract_points, mean_neighbour_distance, sample};
 use bonemesh_mesh::TriangleMesh;
 use bonemesh_segment::{detect_edges, threshold};
-use bonemesh_surface::{alpha_boundary, boundary_surface};
+use bonemesh_surface::{IsosurfaceSettings, alpha_boundary, boundary_surface, isosurface};
 use bonemesh_task::{Task, pool};
 use bonemesh_volume::Volume;
 
 use crate::report::{RenderReport, Seconds, check};
 use crate::source::{Reading, Source};
-use crate::{Error, Sampling, Settings};
+use crate::thresholds::chosen;
+use crate::{Error, Method, Sampling, Settings};
 
 /// Neighbours (with the point itself) whose mean distance is the published choice of alpha.
 const ALPHA_NEIGHBOURS: usize = 100;
@@ -71,25 +72,84 @@ pub fn point_cloud(
     frame: Frame,
     task: &Task,
 ) -> Result<PointCloud, Error> {
-    pool(settings.threads)?
-        .install(|| volume_to_cloud(volume, settings, frame, &mut Seconds::default(), task))
+    pool(settings.threads)?.install(|| {
+        let settings = &chosen(volume, settings, task)?.of(settings);
+        volume_to_cloud(volume, settings, frame, &mut Seconds::default(), task)
+    })
 }
 
 /// Makes the surface of a point cloud.
 ///
 /// # Errors
-/// [`Error::Cloud`], [`Error::Surface`].
+/// [`Error::Cloud`], [`Error::Surface`], [`Error::NotForMethod`] where voxels are needed.
 pub fn mesh_cloud(cloud: &PointCloud, settings: &Settings, task: &Task) -> Result<Rendered, Error> {
+    if settings.method != Method::Alpha {
+        return Err(Error::NotForMethod {
+            choice: "a cloud",
+            method: settings.method.name(),
+        });
+    }
     pool(settings.threads)?.install(|| cloud_to_mesh(cloud, settings, Seconds::default(), task))
 }
 
 fn volume_to_mesh(volume: &Volume, settings: &Settings, task: &Task) -> Result<Rendered, Error> {
     let mut seconds = Seconds::default();
-    let cloud = volume_to_cloud(volume, settings, Frame::Patient, &mut seconds, task)?;
-    let mut rendered = cloud_to_mesh(&cloud, settings, seconds, task)?;
+    let mut clock = Instant::now();
+    let chosen = chosen(volume, settings, task)?;
+    let settings = &chosen.of(settings);
+    let threshold_s = lap(&mut clock);
+    let mut rendered = match settings.method {
+        Method::Alpha => {
+            let cloud = volume_to_cloud(volume, settings, Frame::Patient, &mut seconds, task)?;
+            seconds.edges += threshold_s;
+            cloud_to_mesh(&cloud, settings, seconds, task)?
+        }
+        Method::Isosurface => {
+            seconds.edges += threshold_s;
+            volume_to_isosurface(volume, settings, seconds, task)?
+        }
+    };
     rendered.report.spacing_mm = Some(volume.geometry().spacing_mm());
     rendered.report.threshold_hu = Some(settings.threshold.hu());
+    rendered.report.threshold_reason = chosen.reason;
     Ok(rendered)
+}
+
+fn volume_to_isosurface(
+    volume: &Volume,
+    settings: &Settings,
+    mut seconds: Seconds,
+    task: &Task,
+) -> Result<Rendered, Error> {
+    let refuse = |choice| Error::NotForMethod {
+        choice,
+        method: settings.method.name(),
+    };
+    if settings.sampling.is_some() {
+        return Err(refuse("a sample of the points"));
+    }
+    if settings.alpha_mm.is_some() {
+        return Err(refuse("alpha"));
+    }
+    let mut clock = Instant::now();
+    let cropped = settings
+        .crop
+        .as_ref()
+        .map(|crop| volume.cropped(crop))
+        .transpose()?;
+    let volume = cropped.as_ref().unwrap_or(volume);
+    // Cubes are filled in one way of several: how the voxels were stored must not show.
+    let volume = volume.in_patient_order(task)?;
+    let placing = IsosurfaceSettings {
+        threshold_hu: settings.threshold.hu(),
+        true_edges: settings.true_edges,
+    };
+    let mesh = isosurface(&volume, placing, task)?;
+    let topology = check(&mesh, task)?;
+    seconds.surface = lap(&mut clock);
+    seconds.total = seconds.edges + seconds.surface;
+    let report = RenderReport::new(settings, &topology, seconds);
+    Ok(Rendered { mesh, report })
 }
 
 fn volume_to_cloud(
@@ -155,7 +215,12 @@ fn cloud_to_mesh(
     seconds.surface = lap(&mut clock);
     seconds.total =
         seconds.edges + seconds.cloud + seconds.neighbours + seconds.tetrahedra + seconds.surface;
-    let report = RenderReport::new(settings, cloud, &surface, alpha_mm, &topology, seconds);
+    let mut report = RenderReport::new(settings, &topology, seconds);
+    report.points = Some(cloud.len());
+    report.alpha_mm = Some(alpha_mm);
+    report.tetrahedra = Some(surface.tetrahedra);
+    // Summed exactly on the lattice.
+    report.volume_mm3 = surface.volume_mm3;
     Ok(Rendered {
         mesh: surface.mesh,
         report,

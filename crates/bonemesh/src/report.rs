@@ -1,9 +1,7 @@
 //! What is said of a result: plain values with units in their names, ready for JSON.
 
-use bonemesh_cloud::PointCloud;
 use bonemesh_mesh::{Topology, TriangleMesh, check_topology};
 use bonemesh_roi::Region;
-use bonemesh_surface::AlphaSurface;
 use bonemesh_task::Task;
 use serde::Serialize;
 
@@ -40,18 +38,20 @@ pub struct RenderReport {
     pub method: &'static str,
     /// Bone is strictly above this; `None` for a mesh made of a cloud.
     pub threshold_hu: Option<f64>,
+    /// How the threshold was found, or which preset it is; `None` for any other number.
+    pub threshold_reason: Option<String>,
     /// Canny's smoothing, pixels.
     pub sigma: f64,
     /// `SeriesInstanceUID`, where the volume came from files.
     pub series_uid: Option<String>,
     /// Distance between columns, rows, slices in mm.
     pub spacing_mm: Option<[f64; 3]>,
-    /// Points that were meshed.
-    pub points: usize,
-    /// Largest circumradius kept.
-    pub alpha_mm: f64,
-    /// Tetrahedra kept.
-    pub tetrahedra: usize,
+    /// Points that were meshed; `None` where a method meshes voxels.
+    pub points: Option<usize>,
+    /// Largest circumradius kept, by the method with alpha.
+    pub alpha_mm: Option<f64>,
+    /// Tetrahedra kept, by the method with alpha.
+    pub tetrahedra: Option<usize>,
     /// Vertices of the mesh.
     pub vertices: usize,
     /// Triangles of the mesh.
@@ -62,7 +62,7 @@ pub struct RenderReport {
     pub manifold: bool,
     /// Parts of the mesh that do not touch.
     pub components: usize,
-    /// Volume inside the mesh, through the centres of the edge pixels.
+    /// Volume inside the mesh; with alpha it goes through the centres of the edge pixels.
     pub volume_mm3: f64,
     /// Seconds of each step.
     pub seconds: Seconds,
@@ -73,30 +73,24 @@ pub struct RenderReport {
 }
 
 impl RenderReport {
-    pub(crate) fn new(
-        settings: &Settings,
-        cloud: &PointCloud,
-        surface: &AlphaSurface,
-        alpha_mm: f64,
-        check: &CheckReport,
-        seconds: Seconds,
-    ) -> Self {
+    pub(crate) fn new(settings: &Settings, check: &CheckReport, seconds: Seconds) -> Self {
         Self {
             version: VERSION,
             method: settings.method.name(),
             threshold_hu: None,
+            threshold_reason: None,
             sigma: settings.canny.sigma(),
             series_uid: None,
             spacing_mm: None,
-            points: cloud.points_mm().len(),
-            alpha_mm,
-            tetrahedra: surface.tetrahedra,
+            points: None,
+            alpha_mm: None,
+            tetrahedra: None,
             vertices: check.vertices,
             triangles: check.triangles,
             watertight: check.watertight,
             manifold: check.manifold,
             components: check.components,
-            volume_mm3: surface.volume_mm3,
+            volume_mm3: check.volume_mm3,
             seconds,
             peak_mib: peak_mib(),
             warnings: Vec::new(),
@@ -222,10 +216,7 @@ impl From<Topology> for CheckReport {
     }
 }
 
-/// Looks at the topology of `mesh`.
-///
-/// # Errors
-/// [`Error::Cancelled`].
-pub fn check(mesh: &TriangleMesh, task: &Task) -> Result<CheckReport, Error> {
+/// Looks at the topology of `mesh`; cheap enough for every mesh that is made.
+pub(crate) fn check(mesh: &TriangleMesh, task: &Task) -> Result<CheckReport, Error> {
     Ok(check_topology(mesh, task)?.into())
 }

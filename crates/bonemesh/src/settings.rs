@@ -15,16 +15,19 @@ pub enum Method {
     /// The published method: Delaunay tetrahedra of the edge points, filtered by alpha.
     #[default]
     Alpha,
+    /// The surface between voxels, at the true edges of the bone.
+    Isosurface,
 }
 
 impl Method {
     /// Every method, in the order in which they are offered.
-    pub const ALL: [Self; 1] = [Self::Alpha];
+    pub const ALL: [Self; 2] = [Self::Alpha, Self::Isosurface];
 
     /// The name used on the command line, in Python and in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Alpha => "alpha",
+            Self::Isosurface => "isosurface",
         }
     }
 }
@@ -59,12 +62,18 @@ pub struct Sampling {
 pub struct Settings {
     /// Bone is strictly above this.
     pub threshold: HuThreshold,
+    /// Finds the threshold in the volume ([`choose_threshold`](crate::choose_threshold)) instead
+    /// of taking `threshold`.
+    pub auto_threshold: bool,
     /// Canny's sigma and thresholds.
     pub canny: CannySettings,
     /// How the surface is made.
     pub method: Method,
     /// Largest circumradius kept, in mm; `None` takes the mean distance to 100 neighbours.
     pub alpha_mm: Option<f64>,
+    /// Places an isosurface at the true edges of the bone; otherwise where the grey equals the
+    /// threshold.
+    pub true_edges: bool,
     /// Part of the volume to use; `None` uses all of it.
     pub crop: Option<CropBox>,
     /// Which series of the folder; `None` takes the only plausible one.
@@ -84,9 +93,11 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             threshold: HuThreshold::new(SKULL_HU).expect("350 is finite: anything else is a bug"),
+            auto_threshold: false,
             canny: CannySettings::default(),
             method: Method::default(),
             alpha_mm: None,
+            true_edges: true,
             crop: None,
             series: None,
             one_series: false,

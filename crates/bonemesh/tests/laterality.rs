@@ -190,7 +190,7 @@ fn edges_found_in_the_planes_of_storage_are_others() {
 fn the_default_alpha_does_not_depend_on_the_order_either() {
     let alpha = |volume: &Volume| {
         let rendered = render_volume(volume, &halfway(), &Task::default()).unwrap();
-        rendered.report.alpha_mm
+        rendered.report.alpha_mm.unwrap()
     };
     let expected = alpha(&known("axial").0);
     for name in ["feet-first", "sagittal", "decubitus-left"] {
@@ -299,9 +299,9 @@ fn triangles_face_outward_in_grids_of_either_hand() {
         let mesh = read_mesh(&stl, &Task::default()).unwrap();
         let report = bonemesh::check(&mesh, &Task::default()).unwrap();
         assert!(
-            report.volume_mm3 > 20_000.0,
+            report.topology.volume_mm3 > 20_000.0,
             "{name}: {}",
-            report.volume_mm3
+            report.topology.volume_mm3
         );
         let outward = mesh.triangles().iter().filter(|t| {
             let [a, b, c] = mesh.corners_mm(**t);

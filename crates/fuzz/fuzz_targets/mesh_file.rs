@@ -1,4 +1,4 @@
-//! Bytes as a mesh file: the first chooses between STL and PLY.
+//! Bytes as a mesh file: the first chooses between STL, PLY, OBJ and 3MF.
 
 #![no_main]
 
@@ -11,7 +11,7 @@ fuzz_target!(|input: &[u8]| {
     let Some((kind, bytes)) = input.split_first() else {
         return;
     };
-    let name = ["mesh.stl", "mesh.ply"][usize::from(kind & 1)];
+    let name = ["mesh.stl", "mesh.ply", "mesh.obj", "mesh.3mf"][usize::from(kind & 3)];
     with_files(&[(name, bytes)], |folder| {
         if let Ok(mesh) = read_mesh(folder.join(name), &Task::default()) {
             let vertices = mesh.vertices_mm();

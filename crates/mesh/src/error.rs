@@ -33,7 +33,7 @@ pub enum MeshError {
     #[error("{0} vertices are more than 32-bit indices can name (4,294,967,295); split the mesh")]
     TooManyVertices(usize),
     /// The file's extension names no format we know.
-    #[error("{} is neither .stl nor .ply; give the file one of these two extensions", path.display())]
+    #[error("{} ends in none of .stl, .ply, .obj, .3mf; give the file one of these extensions", path.display())]
     UnknownExtension {
         /// The file.
         path: PathBuf,

@@ -1,13 +1,17 @@
 //! Triangle meshes whose indices and coordinates are valid by construction, their files and their
 //! topology.
 //!
+//! [`check_topology`] looks at connections; [`find_intersections`] finds, exactly, triangles that pass
+//! through, overlap or touch one another; [`wall_thickness`] measures through the body.
+//!
 //! Limits: files hold 32-bit floats, so a mesh comes back rounded to them (about 0.00002 mm at
-//! 200 mm from the origin). Only STL and PLY are read and written. Nothing is repaired: triangles
-//! with two equal corners or no area are kept, and [`check_topology`] counts them. It looks at
-//! connections only, so it does not see triangles that pass through one another.
+//! 200 mm from the origin). Only STL, PLY, OBJ and 3MF are read and written. Nothing is repaired:
+//! triangles with two equal corners or no area are kept, and [`check_topology`] counts them.
 //!
 //! ```
-//! use bonemesh_mesh::{TriangleMesh, check_topology, read_mesh, write_mesh};
+//! use bonemesh_mesh::{
+//!     TriangleMesh, TriangleTree, check_topology, find_intersections, read_mesh, write_mesh,
+//! };
 //! use bonemesh_task::Task;
 //!
 //! let tetrahedron = TriangleMesh::new(
@@ -17,6 +21,8 @@
 //! let topology = check_topology(&tetrahedron, &Task::default())?;
 //! assert!(topology.watertight && topology.manifold);
 //! assert!((topology.volume_mm3 - 4.5).abs() < 1e-12);
+//! let tree = TriangleTree::new(&tetrahedron, &Task::default())?;
+//! assert_eq!(find_intersections(&tree, 10, &Task::default())?.count, 0);
 //!
 //! let folder = tempfile::tempdir()?;
 //! let path = folder.path().join("tetrahedron.stl");
@@ -26,16 +32,29 @@
 //! ```
 //!
 //! Formats: 3D Systems, *Stereolithography Interface Specification* (1989), for STL; Turk, *The
-//! PLY Polygon File Format* (1994). Volume by the divergence theorem: Zhang and Chen, *Efficient
+//! PLY Polygon File Format* (1994); Wavefront, *Advanced Visualizer* manual, appendix B1, for OBJ;
+//! 3MF Consortium, *3D Manufacturing Format Core Specification* 1.3 (2021). Exact signs: Shewchuk,
+//! *Adaptive precision floating-point arithmetic and fast robust geometric predicates* (1997). Rays:
+//! Möller and Trumbore, *Fast, minimum storage ray/triangle intersection* (1997); the cone of rays
+//! after Shapira, Shamir and Cohen-Or, *Consistent mesh partitioning and skeletonisation using the
+//! shape diameter function* (2008). Volume by the divergence theorem: Zhang and Chen, *Efficient
 //! feature extraction for 2D/3D objects in mesh representation* (2001).
 
 mod error;
+mod exact;
+mod intersections;
 mod io;
 mod merge;
 mod mesh;
+mod thickness;
 mod topology;
+mod tree;
+mod vector;
 
 pub use error::MeshError;
+pub use intersections::{Intersection, Intersections, find_intersections};
 pub use io::{MeshFormat, check_target, read_mesh, write_mesh};
 pub use mesh::TriangleMesh;
+pub use thickness::{WallThickness, wall_thickness};
 pub use topology::{Topology, check_topology};
+pub use tree::TriangleTree;

@@ -94,20 +94,38 @@ impl TriangleMesh {
     /// Triangles keep their number and order, also those whose corners have become one.
     #[must_use]
     pub fn merged(&self) -> Self {
+        self.merged_with_numbers().0
+    }
+
+    /// [`Self::merged`], and for each vertex of this mesh its number in that one.
+    #[must_use]
+    pub fn merged_with_numbers(&self) -> (Self, Vec<u32>) {
         let mut merger = VertexMerger::default();
-        let merged: Vec<u32> = self
+        let numbers: Vec<u32> = self
             .vertices_mm
             .iter()
             .map(|&v| merger.index_of(v))
             .collect();
-        Self {
+        let merged = Self {
             vertices_mm: merger.into_vertices(),
             triangles: self
                 .triangles
                 .iter()
-                .map(|t| t.map(|v| merged[v as usize]))
+                .map(|t| t.map(|v| numbers[v as usize]))
                 .collect(),
-        }
+        };
+        (merged, numbers)
+    }
+
+    /// The same surface as its file gives it back: coordinates rounded to 32-bit floats, vertices
+    /// that are then equal made one.
+    ///
+    /// # Errors
+    /// [`MeshError::NotFinite`] for a coordinate that is too large for a 32-bit float.
+    pub fn as_written(&self) -> Result<Self, MeshError> {
+        let rounded = |v: &[f64; 3]| v.map(|value| f64::from(value as f32));
+        let vertices_mm = self.vertices_mm.iter().map(rounded).collect();
+        Ok(Self::new(vertices_mm, self.triangles.clone())?.merged())
     }
 
     /// The same triangles without the vertices that none of them uses; the order stays.
@@ -168,6 +186,24 @@ mod tests {
             .merged();
         assert_eq!(mesh.vertices_mm(), [b, a, [9.0; 3]]);
         assert_eq!(mesh.triangles(), [[0, 1, 2], [0, 1, 1]]);
+    }
+
+    #[test]
+    fn what_single_precision_cannot_tell_apart_is_one_vertex_when_written() {
+        let near = [200.0, 1e-50, 0.1];
+        let same = [200.000_000_1, 0.0, f64::from(0.1_f32)];
+        let mesh = TriangleMesh::new(vec![near, [1.0; 3], same], vec![[0, 1, 2]]).unwrap();
+        let written = mesh.as_written().unwrap();
+        assert_eq!(
+            written.vertices_mm(),
+            [[200.0, 0.0, f64::from(0.1_f32)], [1.0; 3]]
+        );
+        assert_eq!(written.triangles(), [[0, 1, 0]]);
+        let far = TriangleMesh::new(vec![[0.0, 1e39, 0.0]], vec![]).unwrap();
+        assert!(matches!(
+            far.as_written(),
+            Err(MeshError::NotFinite { vertex: 0, .. })
+        ));
     }
 
     #[test]

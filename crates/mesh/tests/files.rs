@@ -1,4 +1,4 @@
-//! STL and PLY files: round trips, foreign dialects, files that are none.
+//! STL, PLY, OBJ and 3MF files: round trips, foreign dialects, files that are none.
 
 #![allow(
     clippy::unwrap_used,
@@ -65,12 +65,26 @@ fn an_stl_comes_back_merged_in_file_order() {
 }
 
 #[test]
-fn a_ply_comes_back_with_its_own_vertex_numbers() {
+fn other_files_come_back_with_their_own_vertex_numbers() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("box.ply");
-    let mesh = box_mesh([0.5; 3], [2.0; 3]);
-    write(&path, &mesh);
-    assert_eq!(read(&path).unwrap(), mesh);
+    for name in ["box.ply", "box.OBJ", "box.3mf"] {
+        let path = folder.path().join(name);
+        let mesh = box_mesh([0.5; 3], [2.0; 3]);
+        write(&path, &mesh);
+        assert_eq!(read(&path).unwrap(), mesh, "{name}");
+    }
+}
+
+#[test]
+fn every_file_says_its_unit_and_frame() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["a.stl", "a.ply", "a.obj"] {
+        let path = folder.path().join(name);
+        write(&path, &torus(9, 9));
+        let bytes = fs::read(&path).unwrap();
+        let text = String::from_utf8_lossy(&bytes[..200]).into_owned();
+        assert!(text.contains("millimetres, patient space LPS"), "{text}");
+    }
 }
 
 #[test]
@@ -90,7 +104,7 @@ fn a_written_stl_is_binary_by_every_sign() {
 fn more_triangles_than_one_block_are_written_completely() {
     let folder = tempfile::tempdir().unwrap();
     let torus = torus(300, 250);
-    for name in ["torus.stl", "torus.ply"] {
+    for name in ["torus.stl", "torus.ply", "torus.obj", "torus.3mf"] {
         let path = folder.path().join(name);
         write(&path, &torus);
         let back = read(&path).unwrap();
@@ -294,9 +308,10 @@ fn broken_ply_files_are_refused() {
 
 #[test]
 fn an_unknown_extension_is_refused_with_the_known_ones() {
-    for name in ["a.obj", "a", "stl"] {
+    for name in ["a.off", "a", "stl"] {
         let text = read_bytes(name, b"").unwrap_err().to_string();
-        assert!(text.contains(".stl") && text.contains(".ply"), "{text}");
+        let known = [".stl", ".ply", ".obj", ".3mf"];
+        assert!(known.iter().all(|known| text.contains(known)), "{text}");
     }
 }
 
@@ -328,7 +343,7 @@ fn a_target_is_checked_without_a_trace() {
     let refused = |name: &str| check_target(folder.path().join(name)).unwrap_err();
     assert!(matches!(refused("no/a.stl"), MeshError::NoFolder { .. }));
     assert!(matches!(
-        refused("a.obj"),
+        refused("a.off"),
         MeshError::UnknownExtension { .. }
     ));
 }
@@ -364,7 +379,7 @@ fn meshes_that_no_file_can_hold_are_refused() {
 #[test]
 fn a_cancelled_write_leaves_the_old_file_and_nothing_else() {
     let folder = tempfile::tempdir().unwrap();
-    for name in ["a.stl", "a.ply"] {
+    for name in ["a.stl", "a.ply", "a.obj", "a.3mf"] {
         let path = folder.path().join(name);
         fs::write(&path, "old").unwrap();
         let task = Task::default();
@@ -373,7 +388,7 @@ fn a_cancelled_write_leaves_the_old_file_and_nothing_else() {
         assert!(matches!(error, MeshError::Cancelled(_)));
         assert_eq!(fs::read(&path).unwrap(), b"old");
     }
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 4);
 }
 
 #[cfg(unix)]
@@ -407,7 +422,7 @@ proptest! {
     fn any_mesh_comes_back_rounded_and_merged(
         corners in prop::collection::vec([-3_i32..3, -3_i32..3, -3_i32..3], 3..60),
         scale in prop::sample::select(vec![1.0, 0.1, 123.456, 1e-30]),
-        extension in prop::sample::select(vec!["stl", "ply"]),
+        extension in prop::sample::select(vec!["stl", "ply", "obj", "3mf"]),
     ) {
         let vertices: Vec<[f64; 3]> =
             corners.iter().map(|v| v.map(|c| f64::from(c) * scale)).collect();
@@ -429,10 +444,11 @@ proptest! {
             b"ply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nend_header\n",
             b"ply\nformat binary_little_endian 1.0\nelement face 9\n\
               property list uint int vertex_indices\nend_header\n",
+            b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 ", b"PK\x03\x04",
         ]),
     ) {
         let bytes = [start, &bytes].concat();
-        for name in ["a.stl", "a.ply"] {
+        for name in ["a.stl", "a.ply", "a.obj", "a.3mf"] {
             if let Err(error) = read_bytes(name, &bytes) {
                 prop_assert!(!error.to_string().contains('\n'));
             }

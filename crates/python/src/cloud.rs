@@ -9,23 +9,23 @@ use crate::cancel::Cancel;
 use crate::detach::{Watch, detached};
 use crate::errors;
 use crate::lattice::{Spacing, point_set};
-use crate::options::{self, Threads};
+use crate::options::{self, Threads, Threshold};
 use crate::volume::Volume;
 
 /// One point for each edge pixel of the bone, `(N, 3) float64` in mm, by slice, row and column.
 ///
-/// `frame` is "patient" (DICOM LPS, pixel centres) or "image", the published method's: x = column
+/// `threshold_hu` is a number, "auto" or the name of a preset, as in `render`. `frame` is "patient" (DICOM LPS, pixel centres) or "image", the published method's: x = column
 /// dx - dx/2, y = row dy - dy/2, z = slice location.
 #[pyfunction]
 #[pyo3(signature = (
-    volume, *, threshold_hu=350.0, sigma=1.0, frame="patient", threads=None, progress=None,
+    volume, *, threshold_hu=Threshold::skull(), sigma=1.0, frame="patient", threads=None, progress=None,
     cancel=None
 ))]
 #[allow(clippy::too_many_arguments)] // keyword arguments, as Python has them
 pub(crate) fn point_cloud<'py>(
     py: Python<'py>,
     volume: &Volume,
-    threshold_hu: f64,
+    threshold_hu: Threshold,
     sigma: f64,
     frame: &str,
     threads: Option<Threads>,
@@ -41,12 +41,12 @@ pub(crate) fn point_cloud<'py>(
             return Err(errors::argument(py, &message));
         }
     };
-    let settings = Settings {
-        threshold: options::threshold(py, threshold_hu)?,
+    let mut settings = Settings {
         canny: options::canny(py, sigma, None)?,
         threads: Threads::count(threads),
         ..Settings::default()
     };
+    threshold_hu.set(&mut settings);
     let volume = volume.shared();
     let cloud = detached(py, watch, move |task| {
         bonemesh::point_cloud(&volume, &settings, frame, task)

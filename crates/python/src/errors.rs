@@ -157,6 +157,7 @@ fn is_argument(error: &Error) -> bool {
                 | SegmentError::Sigma(_)
                 | SegmentError::Pixel { .. }
                 | SegmentError::CannyThresholds { .. }
+                | SegmentError::Classes(_)
         ),
         Error::Cloud(e) => matches!(e, CloudError::NeighbourCount(_)),
         Error::Surface(SurfaceError::Delaunay(e)) => matches!(

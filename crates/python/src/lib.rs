@@ -25,6 +25,7 @@ mod render;
 mod report;
 mod series;
 mod tetrahedra;
+mod thresholds;
 mod views;
 mod volume;
 
@@ -38,7 +39,7 @@ mod _native {
     #[pymodule_export]
     use crate::cancel::Cancel;
     #[pymodule_export]
-    use crate::check::check;
+    use crate::check::{check, wall_thickness};
     #[pymodule_export]
     use crate::cloud::{mean_neighbour_distance, point_cloud, sample};
     #[pymodule_export]
@@ -57,6 +58,8 @@ mod _native {
     use crate::series::{LeftOut, Scan, Series, find_series, read_series, scan};
     #[pymodule_export]
     use crate::tetrahedra::{alpha_surface, tetrahedralize};
+    #[pymodule_export]
+    use crate::thresholds::{Histogram, histogram, label_components, suggest_thresholds};
     #[pymodule_export]
     use crate::volume::Volume;
 

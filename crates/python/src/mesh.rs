@@ -69,7 +69,7 @@ impl Mesh {
         dict(py, &self.report)
     }
 
-    /// Write the mesh to a file; its extension (.stl, .ply) names the format.
+    /// Write the mesh to a file; its extension (.stl, .ply, .obj, .3mf) names the format.
     #[pyo3(signature = (path, *, progress=None, cancel=None))]
     fn save(
         &self,
@@ -91,7 +91,7 @@ impl Mesh {
     }
 }
 
-/// Read a mesh file (.stl, .ply); equal vertices become one, in file order.
+/// Read a mesh file (.stl, .ply, .obj, .3mf); equal vertices become one, in file order.
 #[pyfunction]
 #[pyo3(signature = (path, *, progress=None, cancel=None))]
 pub(crate) fn read_mesh(

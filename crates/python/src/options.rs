@@ -3,7 +3,9 @@
 use std::num::NonZeroUsize;
 use std::ops::{Range, RangeInclusive};
 
-use bonemesh::{CannySettings, CropBox, Error, HuThreshold, SeriesChoice};
+use bonemesh::{
+    CannySettings, CropBox, Error, HuThreshold, SeriesChoice, Settings, ThresholdPreset,
+};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyString};
 
@@ -131,9 +133,45 @@ pub(crate) fn seed(py: Python<'_>, seed: i128) -> PyResult<u64> {
     })
 }
 
-/// A threshold in HU.
-pub(crate) fn threshold(py: Python<'_>, hu: f64) -> PyResult<HuThreshold> {
-    HuThreshold::new(hu).map_err(|e| errors::unusable(py, e))
+/// A threshold: a number in HU, the name of a preset, or "auto".
+#[derive(Clone, Copy)]
+pub(crate) enum Threshold {
+    Auto,
+    Given(HuThreshold),
+}
+
+impl Threshold {
+    /// The published threshold for skulls, which functions take where none is given.
+    pub(crate) fn skull() -> Self {
+        Self::Given(ThresholdPreset::Skull.threshold())
+    }
+
+    /// `settings` with this threshold.
+    pub(crate) fn set(self, settings: &mut Settings) {
+        match self {
+            Self::Auto => settings.auto_threshold = true,
+            Self::Given(threshold) => settings.threshold = threshold,
+        }
+    }
+}
+
+impl FromPyObject<'_, '_> for Threshold {
+    type Error = PyErr;
+
+    fn extract(value: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+        let py = value.py();
+        if !value.is_instance_of::<PyString>() {
+            let hu = HuThreshold::new(value.extract()?);
+            return hu.map(Self::Given).map_err(|e| errors::unusable(py, e));
+        }
+        match value.extract::<String>()?.as_str() {
+            "auto" => Ok(Self::Auto),
+            name => name
+                .parse::<ThresholdPreset>()
+                .map(|preset| Self::Given(preset.threshold()))
+                .map_err(|e| errors::argument(py, &format!("{e}, auto"))),
+        }
+    }
 }
 
 /// Canny's parameters; its thresholds are the usual ones where none are given.

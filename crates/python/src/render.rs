@@ -10,7 +10,7 @@ use crate::cancel::Cancel;
 use crate::detach::{Watch, detached};
 use crate::errors;
 use crate::mesh::Mesh;
-use crate::options::{self, Choice, Crop, Threads};
+use crate::options::{self, Choice, Crop, Threads, Threshold};
 use crate::volume::Volume;
 
 /// What is rendered.
@@ -22,13 +22,18 @@ enum Source {
 /// Make the surface of the bone in a CT folder or volume: `Mesh` in patient millimetres (LPS).
 ///
 /// - `threshold_hu`: bone is strictly above it; 350 suits skulls, 600 the cortical bone of limbs.
-/// - `method`: "alpha", the boundary of the Delaunay tetrahedra with a circumradius up to alpha.
+///   "auto" finds it in the volume, a name ("skull", "cortical", "thin-bone", "teeth") takes it
+///   from the literature; `report["threshold_reason"]` says how.
+/// - `method`: "alpha", the boundary of the Delaunay tetrahedra of edge points with a circumradius
+///   up to alpha, or "isosurface", the closed surface between voxels.
 /// - `sigma`: Canny's smoothing in pixels.
 /// - `series`: UID or number (1 is the largest) where a folder holds several.
 /// - `one_series`: all slices that fit together are one series, whatever UIDs they name.
 /// - `crop`: "I0:I1,J0:J1,K0:K1" or three pairs: columns, rows, slices, from 0, ends not included.
 /// - `sample_percent`, `sampler`, `seed`: use only a part of the points; None uses all.
 /// - `alpha_mm`: largest circumradius; None takes the mean distance to 100 neighbours.
+/// - `true_edges`: an isosurface lies at the true edges of the bone, else where the grey equals the
+///   threshold.
 /// - `threads`: worker threads; None is one a core. The result does not depend on it.
 /// - `progress`: called as `progress(stage, fraction)` on this thread.
 /// - `cancel`: a `Cancel` that stops the work.
@@ -36,15 +41,15 @@ enum Source {
 /// `Mesh.report` has counts, topology, volume and seconds, as `bonemesh render --json` prints them.
 #[pyfunction]
 #[pyo3(signature = (
-    path_or_volume, *, threshold_hu=350.0, method="alpha", sigma=1.0, series=None,
-    one_series=false, crop=None, sample_percent=None, sampler="uniform", seed=0, alpha_mm=None, threads=None, progress=None,
+    path_or_volume, *, threshold_hu=Threshold::skull(), method="alpha", sigma=1.0, series=None,
+    one_series=false, crop=None, sample_percent=None, sampler="uniform", seed=0, alpha_mm=None, true_edges=true, threads=None, progress=None,
     cancel=None
 ))]
 #[allow(clippy::too_many_arguments)] // keyword arguments, as Python has them
 pub(crate) fn render(
     py: Python<'_>,
     path_or_volume: &Bound<'_, PyAny>,
-    threshold_hu: f64,
+    threshold_hu: Threshold,
     method: &str,
     sigma: f64,
     series: Option<Choice>,
@@ -54,24 +59,27 @@ pub(crate) fn render(
     sampler: &str,
     seed: i128,
     alpha_mm: Option<f64>,
+    true_edges: bool,
     threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
     cancel: Option<&Cancel>,
 ) -> PyResult<Mesh> {
     let watch = Watch::new(py, progress, cancel)?;
-    let settings = Settings {
-        threshold: options::threshold(py, threshold_hu)?,
+    let mut settings = Settings {
         canny: options::canny(py, sigma, None)?,
         method: method
             .parse::<Method>()
             .map_err(|e| errors::unusable(py, e))?,
         alpha_mm,
+        true_edges,
         crop: crop.map(|c| c.0),
         series: series.map(|s| s.0),
         one_series,
         sampling: sampling(py, sample_percent, sampler, seed)?,
         threads: Threads::count(threads),
+        ..Settings::default()
     };
+    threshold_hu.set(&mut settings);
     let source = source(path_or_volume, &settings)?;
     detached(py, watch, move |task| {
         let rendered = source.render(&settings, task)?;

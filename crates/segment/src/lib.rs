@@ -5,7 +5,16 @@
 //! scikit-image's `feature.canny` finds them on the boolean image; [`canny`] does the same for
 //! one grey image. Results are the same for any number of threads.
 //!
+//! Where the threshold comes from: [`suggest_thresholds`] finds thresholds in the volume itself
+//! ([`edge_threshold`], [`multi_otsu`], [`otsu`]) and adds those of the literature
+//! ([`ThresholdPreset`]). What else can be made of one: [`local_threshold`] lets it follow the
+//! values around each voxel, [`hysteresis_threshold`] and [`grow_region`] keep what is connected
+//! with dense bone or with seeds, [`connected_components`] and [`largest_component`] take a mask
+//! apart.
+//!
 //! Limits: edges are two-dimensional, slice by slice; a border of one pixel never holds an edge.
+//! No threshold knows what bone is: metal, contrast agent and the scanner's table can lie above
+//! it too.
 //!
 //! ```
 //! use bonemesh_segment::{CannySettings, HuThreshold, detect_edges, threshold};
@@ -30,10 +39,18 @@
 //! Sources: J. Canny, *A computational approach to edge detection*, IEEE PAMI 8 (1986);
 //! S. van der Walt et al., *scikit-image*, `PeerJ` 2 (2014), for the order of the operations;
 //! E. Rier, *Generation and segmentation of 3D models of bone from CT images based on 3D point
-//! clouds* (master's thesis), for their use on thresholded CT slices.
+//! clouds* (master's thesis), for their use on thresholded CT slices. Thresholds cite theirs where
+//! they are documented.
 #![forbid(unsafe_code)]
 
 mod canny;
+mod components;
+mod edges;
+mod local;
+mod otsu;
+mod presets;
+mod region;
+mod suggest;
 mod threshold;
 
 use bonemesh_task::Cancelled;
@@ -41,6 +58,13 @@ use bonemesh_volume::Geometry;
 use ndarray::Array3;
 
 pub use canny::{CannySettings, canny, detect_edges};
+pub use components::{Components, Connectivity, connected_components, largest_component};
+pub use edges::{EdgeThreshold, edge_threshold};
+pub use local::{LocalThreshold, local_threshold};
+pub use otsu::{multi_otsu, otsu};
+pub use presets::ThresholdPreset;
+pub use region::{grow_region, hysteresis_threshold};
+pub use suggest::{Suggestion, Suggestions, suggest_thresholds};
 pub use threshold::{HuThreshold, threshold};
 
 /// What cannot be segmented, and the remedy.
@@ -109,9 +133,98 @@ pub enum SegmentError {
         /// Shape that its geometry was made for.
         geometry: [usize; 3],
     },
+    /// A number of classes that no histogram is split into.
+    #[error("a histogram cannot be split into {0} classes; choose 2 to 5")]
+    Classes(usize),
+    /// Fewer different values than classes.
+    #[error(
+        "the voxels have {occupied} different value(s), which make no {classes} classes; give a threshold in HU"
+    )]
+    TooFewValues {
+        /// Bins that hold any voxel.
+        occupied: usize,
+        /// Classes that were asked for.
+        classes: usize,
+    },
+    /// Too few edges between soft tissue and bone.
+    #[error(
+        "only {edges} of {of} edge pixels of bone have soft tissue beside them, too few to find a threshold; use multi-level Otsu or give a threshold in HU"
+    )]
+    FewBoneEdges {
+        /// Edge pixels between soft tissue and bone.
+        edges: usize,
+        /// All edge pixels of bone.
+        of: usize,
+    },
+    /// Nothing tells bone from anything else.
+    #[error(
+        "all voxels have the same value, so no threshold can be found; give one in HU, such as 350"
+    )]
+    NoSuggestion,
+    /// A name that no preset has.
+    #[error("there is no threshold `{0}`; use a number in HU, or one of: {presets}", presets = preset_names())]
+    NoSuchPreset(String),
+    /// A window that cannot be used.
+    #[error("a window of {0} mm cannot be used; choose a number above 0, such as 10")]
+    Window(f64),
+    /// A leeway or contrast that cannot be used.
+    #[error(
+        "a leeway of {leeway_hu} HU with a contrast of {contrast_hu} HU cannot be used; choose numbers from 0, such as 150 and 60"
+    )]
+    Local {
+        /// How far a local threshold may lie from the global one.
+        leeway_hu: f64,
+        /// Standard deviation from which it may.
+        contrast_hu: f64,
+    },
+    /// No seed to grow from.
+    #[error("there is no seed to grow from; give at least one voxel (slice, row, column)")]
+    NoSeeds,
+    /// A seed that is no voxel.
+    #[error(
+        "the seed {seed:?} lies outside the volume of {shape:?} (slices, rows, columns) voxels; count from 0"
+    )]
+    SeedOutside {
+        /// The seed, `[slice, row, column]`.
+        seed: [usize; 3],
+        /// Slices, rows, columns.
+        shape: [usize; 3],
+    },
+    /// A seed that does not lie above the threshold.
+    #[error(
+        "the seed {seed:?} has {hu} HU, which is not above the threshold of {threshold_hu} HU; choose a voxel of bone or a lower threshold"
+    )]
+    SeedBelow {
+        /// The seed, `[slice, row, column]`.
+        seed: [usize; 3],
+        /// Its value.
+        hu: f64,
+        /// The threshold (HU).
+        threshold_hu: f64,
+    },
+    /// Two thresholds in the wrong order.
+    #[error("the low threshold {low_hu} HU is above the high one, {high_hu} HU; swap them")]
+    ThresholdOrder {
+        /// The lower threshold as given (HU).
+        low_hu: f64,
+        /// The higher threshold as given (HU).
+        high_hu: f64,
+    },
+    /// A mask without any voxel has no largest component.
+    #[error("the mask is empty, so it has no largest component; choose a lower threshold")]
+    NoComponent,
+    /// More stretches of voxels than can be numbered.
+    #[error(
+        "the mask falls into {0} stretches, more than can be numbered; choose a smaller part of the volume"
+    )]
+    TooManyRuns(usize),
     /// Stopped on request.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+fn preset_names() -> String {
+    ThresholdPreset::ALL.map(ThresholdPreset::name).join(", ")
 }
 
 /// Which voxels are bone, `[slice, row, column]`.
@@ -121,6 +234,22 @@ pub struct Mask {
     pub voxels: Array3<bool>,
     /// Place in the patient.
     pub geometry: Geometry,
+}
+
+impl Mask {
+    /// Slices, rows, columns.
+    ///
+    /// # Errors
+    /// [`SegmentError::Shape`] when the voxels are not of the geometry's shape.
+    fn checked_shape(&self) -> Result<[usize; 3], SegmentError> {
+        let (slices, rows, columns) = self.voxels.dim();
+        let (array, geometry) = ([slices, rows, columns], self.geometry.shape());
+        if array == geometry {
+            Ok(array)
+        } else {
+            Err(SegmentError::Shape { array, geometry })
+        }
+    }
 }
 
 /// Which voxels lie on an edge, `[slice, row, column]`.

@@ -1,9 +1,13 @@
-//! Bone surfaces from point clouds, one file a method: triangles that face outward, in mm.
+//! Bone surfaces, one file or folder a method: triangles that face outward, in mm.
 //!
-//! Limits: [`alpha_surface`] is the one method so far. Its surface is closed, but may touch
-//! itself in edges and vertices, where a check reports it as not manifold; and alpha is one
-//! length for the whole cloud, so thin gaps close where it is large and holes open where it is
-//! small.
+//! - [`isosurface`] goes between the voxels of a volume, at the true edges of the bone, nearly
+//!   whatever the threshold: a closed 2-manifold without self-intersections. Limits: stairs show
+//!   on slices much thicker than the bone's detail; a wall thinner than twice the scan's blur
+//!   comes out too thick.
+//! - [`alpha_surface`] is the published method, for point clouds. Limits: its surface is closed,
+//!   but may touch itself in edges and vertices, where a check reports it as not manifold; and
+//!   alpha is one length for the whole cloud, so thin gaps close where it is large and holes open
+//!   where it is small.
 //!
 //! ```
 //! use bonemesh_cloud::PointCloud;
@@ -18,16 +22,29 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Method: E. Rier, *Generation and segmentation of 3D models of bone from CT images based on 3D
+//! What the isosurface's parts bring, on scans of 0.5 x 0.5 x 1.5 mm (0.6 x 0.6 x 2 for the femur),
+//! blurred by 0.8 pixel, noise of 15 HU; mean distance of vertices to the true surface in mm at
+//! thresholds from 250 to 800 HU:
+//!
+//! | body | at the threshold | at the true edges |
+//! |---|---|---|
+//! | tube | 0.013 (at 640 HU) to 0.434 | 0.014 at each |
+//! | box with hole | 0.009 to 0.449 | 0.009 at each |
+//! | sphere shell | 0.034 to 0.521 | 0.036 at each |
+//! | femur | | 0.033 to 0.034 |
+//!
+//! Method with alpha: E. Rier, *Generation and segmentation of 3D models of bone from CT images based on 3D
 //! point clouds* (`MASc` thesis, `McMaster` University), after H. Edelsbrunner and E. P. Muecke,
 //! *Three-dimensional alpha shapes*, 1994.
 
 mod alpha;
+mod isosurface;
 
 pub use alpha::{AlphaSurface, alpha_boundary, alpha_surface, boundary_surface};
 use bonemesh_delaunay::DelaunayError;
 use bonemesh_mesh::MeshError;
 use bonemesh_task::Cancelled;
+pub use isosurface::{IsosurfaceSettings, isosurface};
 
 /// Why no surface could be made, and the remedy.
 #[non_exhaustive]
@@ -50,6 +67,15 @@ pub enum SurfaceError {
         /// The alpha asked for.
         alpha_mm: f64,
     },
+    /// No voxel is bone.
+    #[error("no voxel is above {threshold_hu} HU; lower the threshold")]
+    NothingAbove {
+        /// The threshold asked for.
+        threshold_hu: f64,
+    },
+    /// More vertices than an index can name.
+    #[error("the surface has more than 4 billion vertices; crop the volume")]
+    TooLarge,
     /// Stopped on request.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

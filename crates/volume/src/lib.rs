@@ -7,6 +7,8 @@
 //! [`Volume::in_patient_order`] turns and flips the axes so that work done slice by slice does not
 //! depend on how the voxels were stored.
 //!
+//! [`Histogram`] counts how often each value occurs, padding apart.
+//!
 //! Limits: slices are parallel and evenly spaced; readers resample what is not. Shear (gantry
 //! tilt), oblique planes, unequal spacings and left-handed index orders are all ordinary affines.
 //!
@@ -24,12 +26,14 @@
 mod affine;
 mod crop;
 mod geometry;
+mod histogram;
 mod order;
 mod orientation;
 
 pub use affine::Affine;
 pub use crop::{CropBox, CropError};
 pub use geometry::Geometry;
+pub use histogram::Histogram;
 use ndarray::{Array3, s};
 
 /// What is wrong with a volume's parts.

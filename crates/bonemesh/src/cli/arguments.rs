@@ -9,11 +9,12 @@ use bonemesh_dicom::SeriesChoice;
 use bonemesh_mesh::{MeshFormat, TriangleMesh};
 use bonemesh_phantom::{ORIENTATIONS, Orientation, Phantom, PhantomError, ScanSettings};
 use bonemesh_roi::{Method as RoiMethod, ThicknessMm};
-use bonemesh_segment::{CannySettings, HuThreshold};
+use bonemesh_segment::CannySettings;
 use bonemesh_volume::CropBox;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::histogram::{HistogramArguments, HuChoice};
 use crate::settings::{Method, Sampling, Settings};
 
 /// Turns a folder of CT images into a mesh of the bone, and a selection on it into a region.
@@ -31,6 +32,8 @@ pub(super) struct Arguments {
 pub(super) enum Command {
     /// List the series in a folder, what was left out, geometry and warnings.
     Info(Info),
+    /// Count how often each Hounsfield value occurs, and suggest thresholds.
+    Histogram(HistogramArguments),
     /// Make the bone's mesh from a folder of CT files.
     Render(Render),
     /// Make the point cloud of the bone's edges from a folder of CT files.
@@ -39,9 +42,9 @@ pub(super) enum Command {
     Mesh(MeshArguments),
     /// Take the region under selected vertices out of a mesh.
     Roi(Roi),
-    /// Check the topology of a mesh: watertight, manifold, winding, components, volume.
+    /// Check whether a mesh can be printed: closed, manifold, no self-intersections, thinnest wall.
     Check {
-        /// Mesh file (.stl, .ply).
+        /// Mesh file (.stl, .ply, .obj, .3mf).
         mesh: PathBuf,
     },
     /// Write a phantom as a DICOM CT series, with its truth beside it.
@@ -62,9 +65,10 @@ pub(super) struct Info {
 
 #[derive(Debug, Args)]
 pub(super) struct EdgeArguments {
-    /// Bone is strictly above this Hounsfield value.
-    #[arg(long, default_value = "350", allow_negative_numbers = true, value_parser = hu)]
-    hu: HuThreshold,
+    /// Bone is strictly above this Hounsfield value; or `auto`, or a name that `bonemesh histogram`
+    /// lists, such as skull or cortical.
+    #[arg(long, default_value = "350", allow_negative_numbers = true)]
+    hu: HuChoice,
     /// Canny's smoothing in pixels.
     #[arg(long, default_value = "1.0", allow_negative_numbers = true, value_parser = canny)]
     sigma: CannySettings,
@@ -105,13 +109,16 @@ pub(super) struct SurfaceArguments {
     /// Largest circumradius kept in mm [default: mean distance to 100 neighbours].
     #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = length_mm)]
     alpha: Option<f64>,
+    /// Puts an isosurface where the grey equals the threshold, not at the true edges of the bone.
+    #[arg(long)]
+    at_threshold: bool,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct Render {
     /// Folder of CT files (sub-folders are searched too), or one NIfTI, NRRD or multi-frame file.
     pub(super) directory: PathBuf,
-    /// Mesh file to write (.stl, .ply).
+    /// Mesh file to write (.stl, .ply, .obj, .3mf).
     #[arg(short, long, value_parser = mesh_file())]
     pub(super) output: PathBuf,
     #[command(flatten)]
@@ -155,7 +162,7 @@ impl From<FrameName> for Frame {
 pub(super) struct MeshArguments {
     /// Cloud file (.npy, .ply, .xyz).
     pub(super) cloud: PathBuf,
-    /// Mesh file to write (.stl, .ply).
+    /// Mesh file to write (.stl, .ply, .obj, .3mf).
     #[arg(short, long, value_parser = mesh_file())]
     pub(super) output: PathBuf,
     #[command(flatten)]
@@ -167,14 +174,14 @@ pub(super) struct MeshArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct Roi {
-    /// Mesh file (.stl, .ply).
+    /// Mesh file (.stl, .ply, .obj, .3mf).
     pub(super) mesh: PathBuf,
     #[command(flatten)]
     pub(super) selection: Selection,
     /// How deep the region reaches below the selection, in mm.
     #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = thickness)]
     pub(super) thickness: ThicknessMm,
-    /// Mesh file to write (.stl, .ply).
+    /// Mesh file to write (.stl, .ply, .obj, .3mf).
     #[arg(short, long, value_parser = mesh_file())]
     pub(super) output: PathBuf,
     /// How the region is found.
@@ -305,15 +312,21 @@ fn listed(title: &str, names: impl Iterator<Item = (&'static str, &'static str)>
 impl EdgeArguments {
     /// The settings for rendering with `surface`.
     pub(super) fn settings(&self, surface: Option<&SurfaceArguments>) -> Settings {
+        let made = surface.map(SurfaceArguments::settings).unwrap_or_default();
+        let (threshold, auto_threshold) = match self.hu {
+            HuChoice::Auto => (made.threshold, true),
+            HuChoice::Given(threshold) => (threshold, false),
+        };
         Settings {
-            threshold: self.hu,
+            threshold,
+            auto_threshold,
             canny: self.sigma,
             crop: self.crop.clone(),
             series: self.series.clone(),
             one_series: self.one_series,
             sampling: self.sampling.settings(),
             threads: self.threads,
-            ..surface.map(SurfaceArguments::settings).unwrap_or_default()
+            ..made
         }
     }
 }
@@ -334,6 +347,7 @@ impl SurfaceArguments {
         Settings {
             method: self.method,
             alpha_mm: self.alpha,
+            true_edges: !self.at_threshold,
             ..Settings::default()
         }
     }
@@ -347,11 +361,6 @@ fn mesh_file() -> impl TypedValueParser<Value = PathBuf> {
 /// A path, Unicode or not, whose ending names a cloud format.
 fn cloud_file() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|path| CloudFormat::of(&path).map(|_| path))
-}
-
-fn hu(text: &str) -> Result<HuThreshold, String> {
-    let hu = number(text)?;
-    HuThreshold::new(hu).map_err(|e| e.to_string())
 }
 
 fn canny(text: &str) -> Result<CannySettings, String> {

@@ -14,16 +14,18 @@ use super::arguments::{
     CloudArguments, Command, Info, MeshArguments, PhantomArguments, Render, Roi,
 };
 use super::output::Answer;
-use super::text;
+use super::{histogram, text};
 use crate::region::{RegionRequest, select_roi};
 use crate::render::{Rendered, mesh_cloud, point_cloud, render};
 use crate::source::{Reading, Source};
+use crate::thresholds::choose_threshold;
 use crate::{Error, Settings, check};
 
 /// Runs `command`; the error is the one line that the user reads.
 pub(super) fn run(command: &Command, task: &Task) -> Result<Answer, String> {
     match command {
         Command::Info(arguments) => info(arguments, task),
+        Command::Histogram(arguments) => histogram::run(arguments, task),
         Command::Render(arguments) => run_render(arguments, task),
         Command::Cloud(arguments) => run_cloud(arguments, task),
         Command::Mesh(arguments) => run_mesh(arguments, task),
@@ -80,12 +82,20 @@ fn run_cloud(arguments: &CloudArguments, task: &Task) -> Result<Answer, Error> {
         let source = Source::open(&arguments.directory, settings.one_series, task)?;
         source.read(settings.series.as_ref(), task)
     })?;
+    let chosen = choose_threshold(&volume, &settings, task)?;
+    let settings = chosen.of(&settings);
     let cloud = point_cloud(&volume, &settings, arguments.frame.into(), task)?;
     write_cloud(&cloud, &arguments.output)?;
     let points = cloud.points_mm().len();
-    let text = format!("{}\n  {points} points\n", arguments.output.display());
+    let text = format!(
+        "{}\n{}  {points} points\n",
+        arguments.output.display(),
+        text::threshold(chosen.threshold.hu(), chosen.reason.as_deref())
+    );
     let report = json!({
         "points": points,
+        "threshold_hu": chosen.threshold.hu(),
+        "threshold_reason": chosen.reason,
         "output": arguments.output.to_string_lossy(),
         "warnings": series.warnings,
     });

@@ -5,6 +5,7 @@
 
 mod arguments;
 mod commands;
+mod histogram;
 mod output;
 mod progress;
 mod text;

@@ -3,7 +3,8 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use crate::report::{CheckReport, RegionReport, RenderReport};
+use crate::PrintCheck;
+use crate::report::{RegionReport, RenderReport};
 use crate::source::Contents;
 
 /// Files that `info` names one by one.
@@ -65,11 +66,21 @@ pub(super) fn rendered(report: &RenderReport, file: &Path) -> String {
         report.components,
         report.volume_mm3 / MM3_PER_CM3
     ));
-    line(format!(
-        "  {} points, alpha {:.3} mm, {} tetrahedra",
-        report.points, report.alpha_mm, report.tetrahedra
-    ));
+    if let (Some(points), Some(alpha_mm), Some(tetrahedra)) =
+        (report.points, report.alpha_mm, report.tetrahedra)
+    {
+        line(format!(
+            "  {points} points, alpha {alpha_mm:.3} mm, {tetrahedra} tetrahedra"
+        ));
+    }
     line(format!("  {}", verdict(report.watertight, report.manifold)));
+    if let Some(hu) = report.threshold_hu {
+        text.push_str(&threshold(hu, report.threshold_reason.as_deref()));
+    }
+    let mut line = |l: String| {
+        text.push_str(&l);
+        text.push('\n');
+    };
     let s = &report.seconds;
     line(format!(
         "  {:.2} s: read {:.2}, edges {:.2}, cloud {:.2}, neighbours {:.2}, tetrahedra {:.2}, surface {:.2}, write {:.2}",
@@ -79,6 +90,14 @@ pub(super) fn rendered(report: &RenderReport, file: &Path) -> String {
         line(format!("  note: {warning}"));
     }
     text
+}
+
+/// The threshold, and where it is from.
+pub(super) fn threshold(hu: f64, reason: Option<&str>) -> String {
+    match reason {
+        Some(reason) => format!("  bone above {hu} HU ({reason})\n"),
+        None => format!("  bone above {hu} HU\n"),
+    }
 }
 
 /// `roi`.
@@ -99,55 +118,90 @@ pub(super) fn region(report: &RegionReport, file: &Path) -> String {
 }
 
 /// `check`.
-pub(super) fn checked(report: &CheckReport, file: &Path) -> String {
-    let mut text = format!("{}\n", file.display());
+pub(super) fn checked(check: &PrintCheck, file: &Path) -> String {
+    let report = &check.topology;
     let yes = |b: bool| if b { "yes" } else { "no" };
-    let mut row = |name: &str, value: String| {
+    let mut rows = vec![
+        ("vertices", report.vertices.to_string()),
+        ("triangles", report.triangles.to_string()),
+        ("components", report.components.to_string()),
+        (
+            "watertight",
+            format!(
+                "{} ({} open edges)",
+                yes(report.watertight),
+                report.boundary_edges
+            ),
+        ),
+        (
+            "manifold",
+            format!(
+                "{} ({} edges, {} vertices are not)",
+                yes(report.manifold),
+                report.non_manifold_edges,
+                report.non_manifold_vertices
+            ),
+        ),
+        (
+            "consistent winding",
+            yes(report.consistent_winding).to_owned(),
+        ),
+        ("facing outward", yes(check.outward).to_owned()),
+        ("self-intersections", intersections(check)),
+        (
+            "degenerate triangles",
+            report.degenerate_triangles.to_string(),
+        ),
+        (
+            "volume",
+            format!("{:.2} cm3", report.volume_mm3 / MM3_PER_CM3),
+        ),
+        ("area", format!("{:.2} cm2", report.area_mm2 / 100.0)),
+    ];
+    rows.extend(walls(check));
+    if let Some([low, high]) = report.bounds_mm {
+        let axes = ["x (mm)", "y (mm)", "z (mm)"].into_iter().enumerate();
+        rows.extend(axes.map(|(axis, name)| {
+            let extent = format!("{:.2} to {:.2}", low[axis], high[axis]);
+            (name, extent)
+        }));
+    }
+    rows.push(("printable", yes(check.printable).to_owned()));
+    let mut text = format!("{}\n", file.display());
+    for (name, value) in rows {
         // Writing to a String cannot fail.
         let _ = writeln!(text, "  {name:24}{value}");
-    };
-    row("vertices", report.vertices.to_string());
-    row("triangles", report.triangles.to_string());
-    row("components", report.components.to_string());
-    row(
-        "watertight",
-        format!(
-            "{} ({} open edges)",
-            yes(report.watertight),
-            report.boundary_edges
-        ),
-    );
-    row(
-        "manifold",
-        format!(
-            "{} ({} edges, {} vertices are not)",
-            yes(report.manifold),
-            report.non_manifold_edges,
-            report.non_manifold_vertices
-        ),
-    );
-    row(
-        "consistent winding",
-        yes(report.consistent_winding).to_owned(),
-    );
-    row(
-        "degenerate triangles",
-        report.degenerate_triangles.to_string(),
-    );
-    row(
-        "volume",
-        format!("{:.2} cm3", report.volume_mm3 / MM3_PER_CM3),
-    );
-    row("area", format!("{:.2} cm2", report.area_mm2 / 100.0));
-    if let Some([low, high]) = report.bounds_mm {
-        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-            row(
-                &format!("{name} (mm)"),
-                format!("{:.2} to {:.2}", low[axis], high[axis]),
-            );
-        }
+    }
+    for reason in &check.reasons {
+        let _ = writeln!(text, "    {reason}");
     }
     text
+}
+
+/// How many there are and where the first is.
+fn intersections(check: &PrintCheck) -> String {
+    match check.intersections.first() {
+        Some(first) => format!(
+            "{} pairs, {} triangles; the first at {}",
+            check.self_intersections,
+            check.intersecting_triangles,
+            place(first.place_mm)
+        ),
+        None => check.self_intersections.to_string(),
+    }
+}
+
+/// The row of the walls, if there are any.
+fn walls(check: &PrintCheck) -> Option<(&'static str, String)> {
+    let thinnest = check.thinnest_wall_mm?;
+    let at = place(check.thinnest_wall_place_mm?);
+    let low = check.wall_5_percent_mm?;
+    let text = format!("{thinnest:.2} mm at {at}; 5 % of the surface below {low:.2} mm");
+    Some(("thinnest wall", text))
+}
+
+fn place([x, y, z]: [f64; 3]) -> String {
+    format!("({x:.2}, {y:.2}, {z:.2})")
 }
 
 fn verdict(watertight: bool, manifold: bool) -> &'static str {

@@ -1,11 +1,18 @@
 //! Mesh files, chosen by their extension.
 
 mod atomic;
+mod obj_read;
+mod obj_write;
 mod ply_header;
 mod ply_read;
 mod ply_write;
 mod stl_read;
 mod stl_write;
+mod text_blocks;
+mod threemf_model;
+mod threemf_read;
+mod threemf_write;
+mod xml;
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -18,6 +25,9 @@ use crate::{MeshError, TriangleMesh};
 /// is smooth and a cancel takes effect at once.
 const BLOCK: usize = 1 << 16;
 
+/// What lengths and axes mean, said in every format that has a place for words.
+const FRAME: &str = "millimetres, patient space LPS (x to the left, y to the back, z to the head)";
+
 /// A mesh file format.
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +36,10 @@ pub enum MeshFormat {
     Stl,
     /// Polygon file format: binary little-endian or ASCII when read, the former when written.
     Ply,
+    /// Wavefront OBJ, which is text.
+    Obj,
+    /// 3D Manufacturing Format: a zip archive with a model in XML.
+    ThreeMf,
 }
 
 impl MeshFormat {
@@ -38,6 +52,8 @@ impl MeshFormat {
         match extension.as_ref().and_then(|e| e.to_str()) {
             Some("stl") => Ok(Self::Stl),
             Some("ply") => Ok(Self::Ply),
+            Some("obj") => Ok(Self::Obj),
+            Some("3mf") => Ok(Self::ThreeMf),
             _ => Err(MeshError::UnknownExtension {
                 path: path.to_path_buf(),
             }),
@@ -57,12 +73,14 @@ pub fn check_target(path: impl AsRef<Path>) -> Result<(), MeshError> {
     atomic::probe(path)
 }
 
-/// Reads an STL or PLY mesh and merges vertices of equal coordinates in file order.
+/// Reads an STL, PLY, OBJ or 3MF mesh and merges vertices of equal coordinates in file order.
 ///
-/// Vertex numbers: STL corners in the order of the file, PLY vertices in the order of the file
+/// Vertex numbers: STL corners in the order of the file, other vertices in the order of the file
 /// (used or not); the first at its place gets the next number. The same file always gives the same
-/// numbers. Lengths are taken as mm, which neither format says. Triangles with equal corners stay,
+/// numbers. Lengths are taken as mm, which of these formats only 3MF says; its other units are
+/// converted, and its items and components put to their places. Triangles with equal corners stay,
 /// so triangle numbers are those of the file too. Normals, colours and names are not read.
+/// Coordinates of OBJ and 3MF are read in single precision.
 ///
 /// # Errors
 /// [`MeshError`] naming the file: unknown extension, missing or unreadable file, not of its
@@ -72,6 +90,8 @@ pub fn read_mesh(path: impl AsRef<Path>, task: &Task) -> Result<TriangleMesh, Me
     let mesh = match MeshFormat::of(path)? {
         MeshFormat::Stl => stl_read::read(path, task)?,
         MeshFormat::Ply => ply_read::read(path, task)?,
+        MeshFormat::Obj => obj_read::read(path, task)?,
+        MeshFormat::ThreeMf => threemf_read::read(path, task)?,
     };
     if mesh.triangles().is_empty() {
         return Err(MeshError::NoTriangles {
@@ -81,11 +101,13 @@ pub fn read_mesh(path: impl AsRef<Path>, task: &Task) -> Result<TriangleMesh, Me
     Ok(mesh)
 }
 
-/// Writes a mesh as binary STL or binary little-endian PLY, in mm and 32-bit floats.
+/// Writes a mesh as binary STL, binary little-endian PLY, OBJ or 3MF, in mm and 32-bit floats.
 ///
-/// The file appears complete or not at all: it is written under another name beside its place and
-/// renamed. It says nothing of patient, person or machine. Vertices that are distinct but closer
-/// than 32-bit floats tell apart (0.00002 mm at 200 mm) are one vertex when an STL is read again.
+/// The file says its unit and frame: millimetres, patient space LPS. It appears complete or not at
+/// all: it is written under another name beside its place and renamed. It says nothing of patient,
+/// person or machine. Vertices that are distinct but closer than 32-bit floats tell apart (0.00002 mm
+/// at 200 mm) are one vertex when the file is read again. Triangles with two equal vertices, which
+/// 3MF forbids, are left out of it.
 ///
 /// # Errors
 /// [`MeshError`] naming the file: unknown extension, missing or read-only folder, full disk, mesh
@@ -102,6 +124,8 @@ pub fn write_mesh(
     atomic::write(path, |file| match format {
         MeshFormat::Stl => stl_write::write(file, mesh, task),
         MeshFormat::Ply => ply_write::write(file, mesh, task),
+        MeshFormat::Obj => obj_write::write(file, mesh, task),
+        MeshFormat::ThreeMf => threemf_write::write(file, mesh, task),
     })
 }
 

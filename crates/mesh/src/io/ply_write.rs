@@ -5,14 +5,14 @@ use std::io::Write;
 
 use bonemesh_task::Task;
 
-use super::BLOCK;
 use super::atomic::Fault;
+use super::{BLOCK, FRAME};
 use crate::TriangleMesh;
 
 /// Writes the header, all vertices and all triangles.
 pub(super) fn write(file: &mut File, mesh: &TriangleMesh, task: &Task) -> Result<(), Fault> {
     let header = format!(
-        "ply\nformat binary_little_endian 1.0\ncomment lengths in mm, made by Bonemesh\n\
+        "ply\nformat binary_little_endian 1.0\ncomment {FRAME}\ncomment made by Bonemesh\n\
          element vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
          element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
         mesh.vertices_mm().len(),

@@ -18,7 +18,7 @@ use crate::TriangleMesh;
 const RECORD: usize = 50;
 
 /// Says what made the file. Must not begin with `solid`, by which readers know ASCII.
-const HEADER: &[u8] = b"binary STL, mm, made by Bonemesh";
+const HEADER: &[u8] = b"binary STL, millimetres, patient space LPS, made by Bonemesh";
 
 /// Writes the header, the count and all triangles; a block is encoded while the one before it is
 /// written.

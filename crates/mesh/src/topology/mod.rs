@@ -15,6 +15,7 @@ mod vertex;
 use bonemesh_task::{Task, chunked_sum};
 use rayon::prelude::*;
 
+use crate::vector::{cross, dot, minus};
 use crate::{MeshError, TriangleMesh};
 use vertex::Incidence;
 
@@ -168,20 +169,4 @@ impl Shape {
             is_flat: doubled_area <= FLATNESS * longest_squared,
         }
     }
-}
-
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }

@@ -14,6 +14,7 @@ __all__ = [
     "Cancel",
     "Cancelled",
     "DicomError",
+    "Histogram",
     "LeftOut",
     "Mesh",
     "MeshError",
@@ -25,6 +26,8 @@ __all__ = [
     "canny",
     "check",
     "find_series",
+    "histogram",
+    "label_components",
     "main",
     "mean_neighbour_distance",
     "phantom",
@@ -35,7 +38,9 @@ __all__ = [
     "sample",
     "scan",
     "select_roi",
+    "suggest_thresholds",
     "tetrahedralize",
+    "wall_thickness",
     "write_phantom",
 ]
 
@@ -47,6 +52,8 @@ _Progress: TypeAlias = Callable[[str, float], object]
 # Columns, rows, slices, each (first, end).
 _Crop: TypeAlias = str | Sequence[tuple[SupportsIndex, SupportsIndex]]
 _Sampler: TypeAlias = Literal["uniform", "random", "thesis-uniform"]
+# A threshold in place of a number of Hounsfield units; 350 where none is given.
+_Threshold: TypeAlias = Literal["auto", "skull", "cortical", "thin-bone", "teeth"]
 _Orientation: TypeAlias = Literal[
     "axial",
     "reversed",
@@ -161,6 +168,22 @@ class Volume:
     def warnings(self) -> list[str]: ...
 
 @final
+class Histogram:
+    # (N,) voxels; bin b ends with edges_hu[b + 1].
+    @property
+    def counts(self) -> npt.NDArray[np.uint64]: ...
+    # (N + 1,)
+    @property
+    def edges_hu(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def voxels(self) -> int: ...
+    @property
+    def padding(self) -> int: ...
+    @property
+    def beyond(self) -> int: ...
+    def otsu(self, classes: SupportsIndex = 2) -> list[float]: ...
+
+@final
 class Mesh:
     def __new__(cls, vertices: npt.ArrayLike, triangles: npt.ArrayLike) -> Mesh: ...
     # (N, 3) mm, read-only.
@@ -215,10 +238,35 @@ def canny(
     progress: _Progress | None = None,
     cancel: Cancel | None = None,
 ) -> npt.NDArray[np.bool_]: ...
+def histogram(
+    volume: Volume,
+    *,
+    bin_hu: SupportsIndex = 10,
+    crop: _Crop | None = None,
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Histogram: ...
+def suggest_thresholds(
+    volume: Volume,
+    *,
+    crop: _Crop | None = None,
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> list[dict[str, Any]]: ...
+def label_components(
+    mask: npt.ArrayLike,
+    *,
+    connectivity: Literal[6, 26] = 26,
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> npt.NDArray[np.uint32]: ...
 def point_cloud(
     volume: Volume,
     *,
-    threshold_hu: float = 350.0,
+    threshold_hu: float | _Threshold = ...,
     sigma: float = 1.0,
     frame: Literal["patient", "image"] = "patient",
     threads: SupportsIndex | None = None,
@@ -266,8 +314,8 @@ def alpha_surface(
 def render(
     path_or_volume: _Path | Volume,
     *,
-    threshold_hu: float = 350.0,
-    method: Literal["alpha"] = "alpha",
+    threshold_hu: float | _Threshold = ...,
+    method: Literal["alpha", "isosurface"] = "alpha",
     sigma: float = 1.0,
     series: SupportsIndex | str | None = None,
     one_series: bool = False,
@@ -276,6 +324,7 @@ def render(
     sampler: _Sampler = "uniform",
     seed: SupportsIndex = 0,
     alpha_mm: float | None = None,
+    true_edges: bool = True,
     threads: SupportsIndex | None = None,
     progress: _Progress | None = None,
     cancel: Cancel | None = None,
@@ -302,6 +351,12 @@ def check(
     progress: _Progress | None = None,
     cancel: Cancel | None = None,
 ) -> dict[str, Any]: ...
+def wall_thickness(
+    mesh: Mesh,
+    *,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> npt.NDArray[np.float64]: ...
 def phantom(
     name: str,
     *,
