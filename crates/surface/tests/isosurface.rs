@@ -1,5 +1,7 @@
 //! Promises of isosurfaces, on volumes whose truth is a formula.
 
+#![allow(clippy::unwrap_used, reason = "tests")]
+
 use bonemesh_mesh::{TriangleMesh, TriangleTree, check_topology, find_intersections};
 use bonemesh_surface::{IsosurfaceSettings, SurfaceError, isosurface};
 use bonemesh_task::{Task, pool};
