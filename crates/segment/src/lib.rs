@@ -10,7 +10,7 @@
 //! ([`ThresholdPreset`]). What else can be made of one: [`local_threshold`] lets it follow the
 //! values around each voxel, [`hysteresis_threshold`] and [`grow_region`] keep what is connected
 //! with dense bone or with seeds, [`connected_components`] and [`largest_component`] take a mask
-//! apart.
+//! apart. [`outside_air`] is what lies around whatever was scanned.
 //!
 //! Limits: edges are two-dimensional, slice by slice; a border of one pixel never holds an edge.
 //! No threshold knows what bone is: metal, contrast agent and the scanner's table can lie above
@@ -48,6 +48,7 @@ mod components;
 mod edges;
 mod local;
 mod otsu;
+mod outside;
 mod presets;
 mod region;
 mod suggest;
@@ -62,6 +63,7 @@ pub use components::{Components, Connectivity, connected_components, largest_com
 pub use edges::{EdgeThreshold, edge_threshold};
 pub use local::{LocalThreshold, local_threshold};
 pub use otsu::{multi_otsu, otsu};
+pub use outside::outside_air;
 pub use presets::ThresholdPreset;
 pub use region::{grow_region, hysteresis_threshold};
 pub use suggest::{Suggestion, Suggestions, suggest_thresholds};

@@ -9,7 +9,7 @@
 use std::cell::Cell;
 use std::ops::Range;
 
-use super::grey::Grey;
+use super::grey::{Grey, Voxel};
 
 /// Samples to each side, at most.
 const REACH: usize = 12;
@@ -51,14 +51,15 @@ impl Edge {
     }
 }
 
-/// The edge at a place (in voxels) on the threshold's surface, if there is one. `steepest` turns
-/// a gradient into the direction, in voxels, in which the grey changes fastest for each mm.
-pub(super) fn edge_near(
-    grey: &Grey<'_>,
+/// The edge near a place (in voxels) on the threshold's surface, if there is one. `gradient` is
+/// the grey's there; `steepest` turns it into the direction, in voxels, in which the grey changes
+/// fastest for each mm.
+pub(super) fn edge_near<T: Voxel>(
+    grey: &Grey<'_, T>,
     place: [f32; 3],
+    gradient: [f32; 3],
     steepest: impl Fn([f32; 3]) -> [f32; 3],
 ) -> Option<Edge> {
-    let gradient = grey.gradient(place);
     let inward = unit(steepest(gradient))?;
     let along = |step: f32| std::array::from_fn(|axis| place[axis] + step * inward[axis]);
     let sample = |i: usize| grey.between(along(STEP * (i as f32 - REACH as f32)));

@@ -1,96 +1,77 @@
 //! Hounsfield units between voxels.
 
-use bonemesh_volume::{Volume, Voxels};
-use ndarray::{CowArray, Ix3};
+/// What a voxel is stored as.
+pub(super) trait Voxel: Copy + Sync + Into<f32> {}
 
-/// Voxels in the order slice, row, column: a volume's own, or a copy where they are stored in
-/// another order.
-pub(super) enum Ordered<'a> {
-    I16(CowArray<'a, i16, Ix3>),
-    F32(CowArray<'a, f32, Ix3>),
-}
+impl Voxel for i16 {}
+impl Voxel for f32 {}
 
-impl<'a> Ordered<'a> {
-    pub(super) fn of(volume: &'a Volume) -> Self {
-        match volume.voxels() {
-            Voxels::I16(hu) => Self::I16(hu.as_standard_layout()),
-            Voxels::F32(hu) => Self::F32(hu.as_standard_layout()),
-        }
-    }
-
-    pub(super) fn grey(&self) -> Grey<'_> {
-        const ORDERED: &str = "the voxels were put in order, else it is a bug";
-        let shape = |(slices, rows, columns): (usize, usize, usize)| [columns, rows, slices];
-        match self {
-            Self::I16(hu) => Grey::I16(hu.as_slice().expect(ORDERED), shape(hu.dim())),
-            Self::F32(hu) => Grey::F32(hu.as_slice().expect(ORDERED), shape(hu.dim())),
-        }
-    }
-}
-
-/// Hounsfield units of a volume, read by column, row, slice.
+/// Voxels in the order slice, row, column, read by column, row, slice.
 #[derive(Clone, Copy)]
-pub(super) enum Grey<'a> {
-    I16(&'a [i16], [usize; 3]),
-    F32(&'a [f32], [usize; 3]),
+pub(super) struct Grey<'a, T> {
+    voxels: &'a [T],
+    shape: [usize; 3],
 }
 
-impl Grey<'_> {
+impl<'a, T: Voxel> Grey<'a, T> {
+    /// `shape` counts columns, rows and slices.
+    pub(super) fn new(voxels: &'a [T], shape: [usize; 3]) -> Self {
+        assert_eq!(voxels.len(), shape.iter().product::<usize>(), "a bug");
+        Self { voxels, shape }
+    }
+
     /// Columns, rows, slices.
     #[inline]
     pub(super) fn shape(&self) -> [usize; 3] {
-        match self {
-            Self::I16(_, shape) | Self::F32(_, shape) => *shape,
-        }
+        self.shape
     }
 
     /// Of a voxel.
     #[inline]
     pub(super) fn at(&self, [i, j, k]: [usize; 3]) -> f32 {
-        let [columns, rows, _] = self.shape();
-        let place = (k * rows + j) * columns + i;
-        match self {
-            Self::I16(hu, _) => f32::from(hu[place]),
-            Self::F32(hu, _) => hu[place],
-        }
+        let [columns, rows, _] = self.shape;
+        self.voxels[(k * rows + j) * columns + i].into()
     }
 
     /// At any place, in voxels: linear between the eight around it, that of the border beyond it.
     #[inline]
     pub(super) fn between(&self, place: [f32; 3]) -> f32 {
-        let shape = self.shape();
-        let mut low = [0; 3];
+        let mut stride = 1;
+        let mut first = 0;
         let mut part = [0.0; 3];
         let mut step = [0; 3];
         for axis in 0..3 {
-            let p = place[axis].clamp(0.0, (shape[axis] - 1) as f32);
-            low[axis] = p as usize;
-            part[axis] = p - low[axis] as f32;
-            step[axis] = usize::from(low[axis] + 1 < shape[axis]);
+            let last = self.shape[axis] - 1;
+            let p = place[axis].clamp(0.0, last as f32);
+            let low = p as usize;
+            part[axis] = p - low as f32;
+            step[axis] = if low < last { stride } else { 0 };
+            first += low * stride;
+            stride *= self.shape[axis];
         }
-        let [i, j, k] = low;
-        let line = |j: usize, k: usize| {
-            let (a, b) = (self.at([i, j, k]), self.at([i + step[0], j, k]));
+        let line = |at: usize| {
+            let (a, b) = (self.voxels[at].into(), self.voxels[at + step[0]].into());
             a + part[0] * (b - a)
         };
-        let face = |k: usize| {
-            let (a, b) = (line(j, k), line(j + step[1], k));
+        let face = |at: usize| {
+            let (a, b) = (line(at), line(at + step[1]));
             a + part[1] * (b - a)
         };
-        let (a, b) = (face(k), face(k + step[2]));
+        let (a, b) = (face(first), face(first + step[2]));
         a + part[2] * (b - a)
     }
 
     /// Change for each voxel along columns, rows and slices, across two voxels.
     #[inline]
-    pub(super) fn gradient(&self, place: [f32; 3]) -> [f32; 3] {
+    pub(super) fn gradient(&self, voxel: [usize; 3]) -> [f32; 3] {
         std::array::from_fn(|axis| {
-            let beside = |by: f32| {
-                let mut p = place;
-                p[axis] += by;
-                self.between(p)
+            let beside = |at: usize| {
+                let mut place = voxel;
+                place[axis] = at;
+                self.at(place)
             };
-            0.5 * (beside(1.0) - beside(-1.0))
+            let (here, last) = (voxel[axis], self.shape[axis] - 1);
+            0.5 * (beside(last.min(here + 1)) - beside(here.saturating_sub(1)))
         })
     }
 }

@@ -12,10 +12,10 @@ use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;
 
 use super::blur::{Blur, level_hu};
+use super::cut;
 use super::edge::{Edge, edge_near};
-use super::grey::Grey;
+use super::grey::{Grey, Voxel};
 use super::march::cut_edges;
-use super::place_on_edge;
 use super::signs::Signs;
 
 /// How far an edge's grey is spread along the surface, in voxels of a slice.
@@ -26,130 +26,161 @@ const SPREAD_SLICES: (f32, f32) = (1.5, 2.5);
 const BEYOND: f32 = 1.15;
 /// Weight of the threshold that was asked for: that of an edge of so many HU.
 const THRESHOLD_WEIGHT: f32 = 2.0;
+/// Contrast of an edge where none was found, HU: soft tissue to bone.
+const THRESHOLD_CONTRAST_HU: f32 = 1000.0;
 
-/// Grey above the level, voxel by voxel: positive inside.
-pub(super) fn above_level(
-    grey: &Grey<'_>,
+/// Grey above the level as a part of the edge's contrast, voxel by voxel: positive inside, from
+/// -0.5 to 0.5 across an edge.
+pub(super) fn above_level<T: Voxel>(
+    grey: &Grey<'_, T>,
     threshold_hu: f32,
     voxel_mm: [f32; 3],
     steepest: impl Fn([f32; 3]) -> [f32; 3] + Sync,
     task: &Task,
 ) -> Result<Vec<f32>, Cancelled> {
     let shape = grey.shape();
-    let signs = Signs::of(shape, |at| grey.at(at) > threshold_hu, task)?;
-    task.begin("edges", 2 * shape[2]);
-    let edges: Vec<Vec<Edge>> = (0..signs.slices())
-        .into_par_iter()
-        .map(|k| {
-            task.advance(1)?;
-            let mut edges = Vec::new();
-            cut_edges(&signs, k, |node, axis| {
-                let value = |at: [usize; 3]| grey.at(at) - threshold_hu;
-                if let Some(place) = place_on_edge(node, axis, shape, value) {
-                    edges.extend(edge_near(grey, place, &steepest));
-                }
-            });
-            Ok(edges)
-        })
-        .collect::<Result<_, Cancelled>>()?;
-    drop(signs);
+    task.begin("edges", 2 * shape[2] + 1);
+    let edges = edges(grey, threshold_hu, steepest, task)?;
     let blur = Blur::of(&edges);
-    let by_slice = by_slice(edges, shape[2]);
-    let pixel_mm = f32::midpoint(voxel_mm[0], voxel_mm[1]);
-    let (least, greatest) = SPREAD_SLICES;
-    let reach = [
-        SPREAD * pixel_mm / voxel_mm[0],
-        SPREAD * pixel_mm / voxel_mm[1],
-        (SPREAD * pixel_mm / voxel_mm[2]).clamp(least, greatest),
-    ];
+    let sources = by_slice(&edges, blur, shape[2]);
+    drop(edges);
+    let reach = reach(voxel_mm);
     let mut above = vec![0.0; shape.iter().product()];
     above
         .par_chunks_mut(shape[0] * shape[1])
         .enumerate()
         .try_for_each(|(k, slice)| {
             task.advance(1)?;
-            let sums = spread(&by_slice, blur, k, shape, reach);
-            for (place, ((value, weighted), weight)) in slice
-                .iter_mut()
-                .zip(sums.levels)
-                .zip(sums.weights)
-                .enumerate()
-            {
-                let level =
-                    (weighted + THRESHOLD_WEIGHT * threshold_hu) / (weight + THRESHOLD_WEIGHT);
-                *value = grey.at([place % shape[0], place / shape[0], k]) - level;
+            let sums = spread(&sources, k, shape, reach);
+            for (place, (value, sum)) in slice.iter_mut().zip(sums).enumerate() {
+                let hu = grey.at([place % shape[0], place / shape[0], k]);
+                *value = sum.above(hu, threshold_hu);
             }
             Ok(())
         })?;
     Ok(above)
 }
 
+/// The edges near the threshold's surface, slice by slice.
+fn edges<T: Voxel>(
+    grey: &Grey<'_, T>,
+    threshold_hu: f32,
+    steepest: impl Fn([f32; 3]) -> [f32; 3] + Sync,
+    task: &Task,
+) -> Result<Vec<Vec<Edge>>, Cancelled> {
+    let shape = grey.shape();
+    let signs = Signs::of(shape, |at| grey.at(at) > threshold_hu, task)?;
+    (0..signs.slices())
+        .into_par_iter()
+        .map(|k| {
+            task.advance(1)?;
+            let mut edges = Vec::new();
+            cut_edges(&signs, k, |node, axis| {
+                let Some([a, b]) = cut::voxels(node, axis, shape) else {
+                    return;
+                };
+                let part = cut::linear(grey.at(a) - threshold_hu, grey.at(b) - threshold_hu);
+                let (at_a, at_b) = (grey.gradient(a), grey.gradient(b));
+                let gradient = [0, 1, 2].map(|d| at_a[d] + part * (at_b[d] - at_a[d]));
+                let place = cut::place(a, axis, part);
+                edges.extend(edge_near(grey, place, gradient, &steepest));
+            });
+            Ok(edges)
+        })
+        .collect()
+}
+
+/// How far a grey is spread along columns, rows and slices, in voxels.
+fn reach(voxel_mm: [f32; 3]) -> [f32; 3] {
+    let spread_mm = SPREAD * f32::midpoint(voxel_mm[0], voxel_mm[1]);
+    let (least, greatest) = SPREAD_SLICES;
+    let [x, y, z] = voxel_mm.map(|mm| spread_mm / mm);
+    [x, y, z.clamp(least, greatest)]
+}
+
+/// An edge's grey, to be spread around it.
+struct Source {
+    at: [f32; 3],
+    outward: [f32; 3],
+    level_hu: f32,
+    contrast_hu: f32,
+    /// How far it counts inward and outward.
+    inner: f32,
+    outer: f32,
+}
+
 /// The edges of each slice of voxels, in their order.
-fn by_slice(edges: Vec<Vec<Edge>>, slices: usize) -> Vec<Vec<Edge>> {
-    let mut by_slice = vec![Vec::new(); slices];
-    for edge in edges.into_iter().flatten() {
+fn by_slice(edges: &[Vec<Edge>], blur: Option<Blur>, slices: usize) -> Vec<Vec<Source>> {
+    let mut by_slice: Vec<Vec<Source>> = (0..slices).map(|_| Vec::new()).collect();
+    for edge in edges.iter().flatten() {
         let slice = edge.at[2].round().clamp(0.0, (slices - 1) as f32);
-        by_slice[slice as usize].push(edge);
+        by_slice[slice as usize].push(Source {
+            at: edge.at,
+            outward: edge.outward,
+            level_hu: level_hu(edge, blur),
+            contrast_hu: edge.contrast_hu(),
+            inner: BEYOND * edge.inner,
+            outer: BEYOND * edge.outer,
+        });
     }
     by_slice
 }
 
-/// Sums over the edges around each voxel of a slice.
-struct Sums {
-    levels: Vec<f32>,
-    weights: Vec<f32>,
+/// Weighted sums over the edges around a voxel.
+#[derive(Clone, Copy, Default)]
+struct Sum {
+    level: f32,
+    contrast: f32,
+    weight: f32,
 }
 
-fn spread(
-    edges: &[Vec<Edge>],
-    blur: Option<Blur>,
-    k: usize,
-    shape: [usize; 3],
-    reach: [f32; 3],
-) -> Sums {
+impl Sum {
+    fn above(self, hu: f32, threshold_hu: f32) -> f32 {
+        let mean = |sum: f32, otherwise: f32| {
+            (sum + THRESHOLD_WEIGHT * otherwise) / (self.weight + THRESHOLD_WEIGHT)
+        };
+        (hu - mean(self.level, threshold_hu)) / mean(self.contrast, THRESHOLD_CONTRAST_HU)
+    }
+}
+
+fn spread(sources: &[Vec<Source>], k: usize, shape: [usize; 3], reach: [f32; 3]) -> Vec<Sum> {
     let [columns, rows, slices] = shape;
-    let mut sums = Sums {
-        levels: vec![0.0; columns * rows],
-        weights: vec![0.0; columns * rows],
-    };
+    let mut sums = vec![Sum::default(); columns * rows];
     let around = reach[2].ceil() as usize + 1;
     let window = k.saturating_sub(around)..(k + around + 1).min(slices);
     let range = |at: f32, reach: f32, end: usize| {
         let first = (at - reach).ceil().max(0.0) as usize;
         first..((at + reach).floor() + 1.0).clamp(0.0, end as f32) as usize
     };
-    for edge in edges[window].iter().flatten() {
-        let z = k as f32 - edge.at[2];
-        let near_z = nearness(z, reach[2]);
+    for source in sources[window].iter().flatten() {
+        let z = k as f32 - source.at[2];
+        let near_z = nearness(z / reach[2]);
         if near_z <= 0.0 {
             continue;
         }
-        let (level_hu, contrast_hu) = (level_hu(edge, blur), edge.contrast_hu());
-        for j in range(edge.at[1], reach[1], rows) {
-            let y = j as f32 - edge.at[1];
-            let near_yz = near_z * nearness(y, reach[1]);
-            for i in range(edge.at[0], reach[0], columns) {
-                let x = i as f32 - edge.at[0];
-                let outward = edge.outward[0] * x + edge.outward[1] * y + edge.outward[2] * z;
-                let end = if outward > 0.0 {
-                    edge.outer
-                } else {
-                    edge.inner
-                };
-                let weight =
-                    contrast_hu * near_yz * nearness(x, reach[0]) * nearness(outward, BEYOND * end);
-                sums.levels[j * columns + i] += weight * level_hu;
-                sums.weights[j * columns + i] += weight;
+        let (inward, outward) = (1.0 / source.inner, 1.0 / source.outer);
+        let across = range(source.at[0], reach[0], columns);
+        for j in range(source.at[1], reach[1], rows) {
+            let y = j as f32 - source.at[1];
+            let near = source.contrast_hu * near_z * nearness(y / reach[1]);
+            let row = &mut sums[j * columns..][across.clone()];
+            for (i, sum) in across.clone().zip(row) {
+                let x = i as f32 - source.at[0];
+                let out = source.outward[0] * x + source.outward[1] * y + source.outward[2] * z;
+                let part = out * if out > 0.0 { outward } else { inward };
+                let weight = near * nearness(x / reach[0]) * nearness(part);
+                sum.level += weight * source.level_hu;
+                sum.contrast += weight * source.contrast_hu;
+                sum.weight += weight;
             }
         }
     }
     sums
 }
 
-/// 1 at a distance of 0, falling to 0 at `reach`.
+/// 1 at 0, falling to 0 at a part of 1.
 #[inline]
-fn nearness(distance: f32, reach: f32) -> f32 {
-    let part = distance / reach;
+fn nearness(part: f32) -> f32 {
     let rest = (1.0 - part * part).max(0.0);
     rest * rest
 }

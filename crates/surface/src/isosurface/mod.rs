@@ -11,6 +11,7 @@
 
 mod blur;
 mod cases;
+mod cut;
 mod edge;
 mod grey;
 mod level;
@@ -19,17 +20,14 @@ mod signs;
 
 use bonemesh_mesh::TriangleMesh;
 use bonemesh_task::Task;
-use bonemesh_volume::{Affine, Volume};
+use bonemesh_volume::{Affine, Volume, Voxels};
+use ndarray::Array3;
 use rayon::prelude::*;
 
 use crate::SurfaceError;
-use grey::{Grey, Ordered};
+use grey::{Grey, Voxel};
 use march::{Rows, cut_edges, triangles};
 use signs::Signs;
-
-/// Vertices stay away from voxels by this part of the step between two: those around one voxel
-/// remain distinct also as 32-bit numbers.
-const FROM_VOXEL: f32 = 0.02;
 
 /// How an isosurface is placed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,27 +51,46 @@ pub fn isosurface(
     settings: IsosurfaceSettings,
     task: &Task,
 ) -> Result<TriangleMesh, SurfaceError> {
-    let ordered = Ordered::of(volume);
-    let grey = ordered.grey();
-    let threshold = match grey {
-        Grey::I16(..) => settings.threshold_hu.floor() + 0.5,
-        Grey::F32(..) => settings.threshold_hu,
-    } as f32;
-    let affine = volume.geometry().patient_from_voxel();
-    if settings.true_edges {
-        let spacing = volume.geometry().spacing_mm().map(|v| v as f32);
-        let above = level::above_level(&grey, threshold, spacing, steepest(affine), task)?;
-        let above = Grey::F32(&above, grey.shape());
-        surface(grey.shape(), |at| above.at(at), affine, settings, task)
-    } else {
-        surface(
-            grey.shape(),
-            |at| grey.at(at) - threshold,
-            affine,
+    // Whole numbers have room between them, so that no voxel lies just on the surface.
+    match volume.voxels() {
+        Voxels::I16(hu) => of_voxels(
+            hu,
+            settings.threshold_hu.floor() + 0.5,
+            volume,
             settings,
             task,
-        )
+        ),
+        Voxels::F32(hu) => of_voxels(hu, settings.threshold_hu, volume, settings, task),
     }
+}
+
+fn of_voxels<T: Voxel>(
+    hu: &Array3<T>,
+    above_hu: f64,
+    volume: &Volume,
+    settings: IsosurfaceSettings,
+    task: &Task,
+) -> Result<TriangleMesh, SurfaceError> {
+    let (slices, rows, columns) = hu.dim();
+    let shape = [columns, rows, slices];
+    let ordered = hu.as_standard_layout();
+    let hu = ordered.as_slice().expect("in order, else it is a bug");
+    let grey = Grey::new(hu, shape);
+    let threshold = above_hu as f32;
+    let affine = volume.geometry().patient_from_voxel();
+    let nothing = SurfaceError::NothingAbove {
+        threshold_hu: settings.threshold_hu,
+    };
+    let mesh = if settings.true_edges {
+        let spacing = volume.geometry().spacing_mm().map(|v| v as f32);
+        let above = level::above_level(&grey, threshold, spacing, steepest(affine), task)?;
+        let above = Grey::new(&above, shape);
+        surface(shape, |at| above.at(at), cut::in_boxes, affine, task)?
+    } else {
+        let above = |at| grey.at(at) - threshold;
+        surface(shape, above, cut::linear, affine, task)?
+    };
+    mesh.ok_or(nothing)
 }
 
 /// Turns a gradient in voxels into the step, in voxels, along which the grey changes fastest for
@@ -97,19 +114,19 @@ fn steepest(affine: &Affine) -> impl Fn([f32; 3]) -> [f32; 3] + Sync + use<> {
     move |g: [f32; 3]| rows.map(|row| row[0] * g[0] + row[1] * g[1] + row[2] * g[2])
 }
 
-/// The surface between voxels of a value above 0 and others.
+/// The surface between voxels of a value above 0 and others, if there are any; `crossing` tells
+/// where between two values it is.
 fn surface(
     shape: [usize; 3],
     value: impl Fn([usize; 3]) -> f32 + Sync,
+    crossing: impl Fn(f32, f32) -> f32 + Sync,
     affine: &Affine,
-    settings: IsosurfaceSettings,
     task: &Task,
-) -> Result<TriangleMesh, SurfaceError> {
+) -> Result<Option<TriangleMesh>, SurfaceError> {
     let signs = Signs::of(shape, |at| value(at) > 0.0, task)?;
     let rows = Rows::of(&signs).ok_or(SurfaceError::TooLarge)?;
     if rows.vertices == 0 {
-        let threshold_hu = settings.threshold_hu;
-        return Err(SurfaceError::NothingAbove { threshold_hu });
+        return Ok(None);
     }
     task.begin("surface", 2 * signs.slices() - 1);
     let vertices: Vec<Vec<[f64; 3]>> = (0..signs.slices())
@@ -118,8 +135,10 @@ fn surface(
             task.advance(1)?;
             let mut vertices = Vec::new();
             cut_edges(&signs, k, |node, axis| {
-                let place =
-                    place_on_edge(node, axis, shape, &value).unwrap_or_else(|| border(node, axis));
+                let place = match cut::voxels(node, axis, shape) {
+                    Some([a, b]) => cut::place(a, axis, crossing(value(a), value(b))),
+                    None => cut::border(node, axis),
+                };
                 vertices.push(affine.apply(place.map(f64::from)));
             });
             Ok(vertices)
@@ -132,34 +151,5 @@ fn surface(
             triangle.swap(1, 2);
         }
     }
-    Ok(TriangleMesh::new(vertices.concat(), triangles)?)
-}
-
-/// Where the value passes 0 between a node and the next one along `axis`, in voxels; `None` if
-/// one of them is on the border.
-fn place_on_edge(
-    node: [usize; 3],
-    axis: usize,
-    shape: [usize; 3],
-    value: impl Fn([usize; 3]) -> f32,
-) -> Option<[f32; 3]> {
-    let is_voxel = |at: [usize; 3]| (0..3).all(|k| (1..=shape[k]).contains(&at[k]));
-    let mut next = node;
-    next[axis] += 1;
-    if !is_voxel(node) || !is_voxel(next) {
-        return None;
-    }
-    let voxel = node.map(|n| n - 1);
-    let (a, b) = (value(voxel), value(next.map(|n| n - 1)));
-    let part = (a / (a - b)).clamp(FROM_VOXEL, 1.0 - FROM_VOXEL);
-    let mut place = voxel.map(|v| v as f32);
-    place[axis] += part;
-    Some(place)
-}
-
-/// Halfway from the outermost voxels to the nodes beyond them: where their voxels end.
-fn border(node: [usize; 3], axis: usize) -> [f32; 3] {
-    let mut place = node.map(|n| n as f32 - 1.0);
-    place[axis] += 0.5;
-    place
+    Ok(Some(TriangleMesh::new(vertices.concat(), triangles)?))
 }
