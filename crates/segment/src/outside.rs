@@ -2,8 +2,8 @@
 
 use bonemesh_task::{Cancelled, Task};
 use bonemesh_volume::{Volume, Voxels};
-use ndarray::{Array2, Array3, ArrayView2, Axis};
 use ndarray::parallel::prelude::*;
+use ndarray::{Array2, Array3, ArrayView2, Axis};
 
 use crate::Mask;
 

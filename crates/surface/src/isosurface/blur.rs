@@ -14,6 +14,7 @@
 use std::sync::LazyLock;
 
 use super::edge::Edge;
+use super::layer;
 
 /// Part of the sharpest edges from which the blur is taken: others are blurred by the bone itself.
 const SHARPEST: f64 = 0.3;
@@ -88,16 +89,25 @@ fn wall_variance(edge: &Edge) -> Option<f32> {
     (wall.width >= SURE_WIDTH).then_some(deviation * deviation)
 }
 
-/// The grey at the true edge, HU.
-pub(super) fn level_hu(edge: &Edge, blur: Option<Blur>) -> f32 {
+/// The grey at the true edge, HU; `has_soft_tissue` tells whether layers of it may hide (`layer`).
+pub(super) fn level_hu(edge: &Edge, blur: Option<Blur>, has_soft_tissue: bool) -> f32 {
     let Some(blur) = blur else {
         return edge.low_hu + 0.5 * edge.contrast_hu();
     };
-    let part = |width: Option<f32>| width.map_or(0.5, |w| part_at_edge(w / blur.along(edge)));
+    let deviation = blur.along(edge);
+    let part = |width: Option<f32>| width.map_or(0.5, |w| part_at_edge(w / deviation));
     // Of a thin wall beside a narrow gap the thinner one says more.
     let (wall, gap) = (part(edge.wall), part(edge.gap));
     let part = if wall > gap { wall } else { 1.0 - gap };
-    edge.low_hu + part * edge.contrast_hu()
+    // How far the bone's own step reaches below its grey.
+    let contrast_hu = match edge.layer {
+        Some(apart) if has_soft_tissue => {
+            let soft = (layer::SOFT_HU - edge.low_hu) / edge.contrast_hu();
+            2.0 * (1.0 - layer::part_at_edge(soft, apart / deviation)) * edge.contrast_hu()
+        }
+        _ => edge.contrast_hu(),
+    };
+    edge.high_hu - (1.0 - part) * contrast_hu
 }
 
 /// The grey at the edge of a blurred wall, as a part of its peak, by its width at half the peak

@@ -39,13 +39,14 @@ pub(super) fn linear(a: f32, b: f32) -> f32 {
     a / (a - b)
 }
 
-/// The same of values that an edge takes from -0.5 to 0.5, as means over the boxes around voxels.
+/// The same of values that an edge takes from -0.5 to 0.5 (more is another edge's), as means over the boxes around voxels.
 ///
 /// A sharp edge is done within the two boxes, so that their sum tells how much of them is inside:
 /// a line between the values would be off by up to 0.086 of the step. The line is true of edges
 /// that take more than two steps; where they take just two, both say the same.
 #[inline]
 pub(super) fn in_boxes(a: f32, b: f32) -> f32 {
+    let [a, b] = [a, b].map(|value| value.clamp(-0.5, 0.5));
     if (a - b).abs() > SHARP {
         0.5 + a.signum() * (a + b)
     } else {

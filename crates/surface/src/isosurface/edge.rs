@@ -10,6 +10,7 @@ use std::cell::Cell;
 use std::ops::Range;
 
 use super::grey::{Grey, Voxel};
+use super::layer;
 
 /// Samples to each side, at most.
 const REACH: usize = 12;
@@ -42,6 +43,9 @@ pub(super) struct Edge {
     /// Voxels to where the grey passes the middle again behind the wall, and before the gap.
     pub(super) wall: Option<f32>,
     pub(super) gap: Option<f32>,
+    /// Voxels between the middle of bone and soft tissue and that of soft tissue and air, where
+    /// there is air around.
+    pub(super) layer: Option<f32>,
 }
 
 impl Edge {
@@ -82,6 +86,7 @@ pub(super) fn edge_near<T: Voxel>(
         outer: voxels(middle - span.outer as f32),
         wall: found.behind(&span).map(|at| voxels(at - middle)),
         gap: found.before(&span).map(|at| voxels(middle - at)),
+        layer: found.layer(&span).map(voxels),
     })
 }
 
@@ -158,6 +163,16 @@ impl<F: Fn(usize) -> f32> Profile<F> {
         samples
             .find(passes)
             .map(|i| i as f32 + (hu - self.at(i)) / self.slope(i))
+    }
+
+    /// Samples between the middle of bone and soft tissue and that of soft tissue and air.
+    fn layer(&self, span: &Span) -> Option<f32> {
+        if !layer::may_hide(span.low_hu, span.high_hu) {
+            return None;
+        }
+        let middle = |hu| f32::midpoint(hu, layer::SOFT_HU);
+        let passes = |hu| self.crossing(hu, span.outer..span.inner);
+        Some(passes(middle(span.high_hu))? - passes(middle(span.low_hu))?)
     }
 
     /// Where the grey has fallen to the middle again behind a wall.

@@ -1,7 +1,7 @@
 //! The grey of the true edge near every voxel of it: the threshold that the surface follows.
 //!
 //! 1. `edges`: on the surface of the threshold that was asked for, find the edges (`edge`) and the
-//!    grey at their true places (`blur`).
+//!    grey at their true places (`blur`, `layer`).
 //! 2. `spread`: each voxel within reach of an edge takes the weighted mean of the greys around
 //!    it; elsewhere the threshold that was asked for stays.
 //!
@@ -15,6 +15,7 @@ use super::blur::{Blur, level_hu};
 use super::cut;
 use super::edge::{Edge, edge_near};
 use super::grey::{Grey, Voxel};
+use super::layer;
 use super::march::cut_edges;
 use super::signs::Signs;
 
@@ -30,7 +31,7 @@ const THRESHOLD_WEIGHT: f32 = 2.0;
 const THRESHOLD_CONTRAST_HU: f32 = 1000.0;
 
 /// Grey above the level as a part of the edge's contrast, voxel by voxel: positive inside, from
-/// -0.5 to 0.5 across an edge.
+/// -0.5 to 0.5 across an edge, lower where something darker lies beyond it.
 pub(super) fn above_level<T: Voxel>(
     grey: &Grey<'_, T>,
     threshold_hu: f32,
@@ -42,7 +43,9 @@ pub(super) fn above_level<T: Voxel>(
     task.begin("edges", 2 * shape[2] + 1);
     let edges = edges(grey, threshold_hu, steepest, task)?;
     let blur = Blur::of(&edges);
-    let sources = by_slice(&edges, blur, shape[2]);
+    let has_soft_tissue = layer::has_soft_tissue(&edges);
+    let level_hu = |edge: &Edge| level_hu(edge, blur, has_soft_tissue);
+    let sources = by_slice(&edges, level_hu, shape[2]);
     drop(edges);
     let reach = reach(voxel_mm);
     let mut above = vec![0.0; shape.iter().product()];
@@ -103,6 +106,7 @@ struct Source {
     at: [f32; 3],
     outward: [f32; 3],
     level_hu: f32,
+    /// From as far below that level as the bone's grey is above it.
     contrast_hu: f32,
     /// How far it counts inward and outward.
     inner: f32,
@@ -110,15 +114,20 @@ struct Source {
 }
 
 /// The edges of each slice of voxels, in their order.
-fn by_slice(edges: &[Vec<Edge>], blur: Option<Blur>, slices: usize) -> Vec<Vec<Source>> {
+fn by_slice(
+    edges: &[Vec<Edge>],
+    level_hu: impl Fn(&Edge) -> f32,
+    slices: usize,
+) -> Vec<Vec<Source>> {
     let mut by_slice: Vec<Vec<Source>> = (0..slices).map(|_| Vec::new()).collect();
     for edge in edges.iter().flatten() {
         let slice = edge.at[2].round().clamp(0.0, (slices - 1) as f32);
+        let level_hu = level_hu(edge);
         by_slice[slice as usize].push(Source {
             at: edge.at,
             outward: edge.outward,
-            level_hu: level_hu(edge, blur),
-            contrast_hu: edge.contrast_hu(),
+            level_hu,
+            contrast_hu: 2.0 * (edge.high_hu - level_hu),
             inner: BEYOND * edge.inner,
             outer: BEYOND * edge.outer,
         });

@@ -14,6 +14,7 @@ mod cases;
 mod cut;
 mod edge;
 mod grey;
+mod layer;
 mod level;
 mod march;
 mod signs;
