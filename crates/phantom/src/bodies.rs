@@ -9,6 +9,7 @@ pub(crate) use head::head;
 pub(crate) use simple::{box_with_hole, sphere_shell, tube};
 
 use crate::body::Layers;
+use crate::shape::build::Solid;
 
 /// A body with the figures that its shape fixes.
 #[derive(Clone, Debug)]
@@ -18,4 +19,6 @@ pub(crate) struct Known {
     pub(crate) volume_mm3: Option<f64>,
     pub(crate) parameters: Vec<(&'static str, f64)>,
     pub(crate) landmarks: Vec<(&'static str, [f64; 3])>,
+    /// Parts of the surface by name, where there are several.
+    pub(crate) structures: Vec<(&'static str, Solid)>,
 }

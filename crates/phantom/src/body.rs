@@ -86,11 +86,19 @@ impl Layers {
 
     /// Mean Hounsfield units of a cube of side `side` mm about `p`, each surface taken as flat
     /// in it: along any direction a cube's shadow has the variance of its side's box.
+    ///
+    /// What a material leaves free is filled by those below it as far as they reach, as if they
+    /// shared no space: where a sinus ends at bone, both fill the cube, and no film of soft tissue
+    /// comes between them.
     pub(crate) fn mean_hu(&self, p: [f64; 3], side: f64) -> f64 {
-        self.tissues.iter().fold(self.background_hu, |hu, tissue| {
-            let covered = (0.5 - tissue.shape.distance(p) / side).clamp(0.0, 1.0);
-            hu + covered * (tissue.hu - hu)
-        })
+        let (mut free, mut hu) = (1.0, 0.0);
+        for tissue in self.tissues.iter().rev() {
+            let reach = (0.5 - tissue.shape.distance(p) / side).clamp(0.0, 1.0);
+            let filled = reach.min(free);
+            hu += filled * tissue.hu;
+            free -= filled;
+        }
+        hu + free * self.background_hu
     }
 }
 
@@ -109,5 +117,29 @@ impl Body for Layers {
             .rev()
             .find(|t| t.shape.distance(p) < 0.0)
             .map_or(self.background_hu, |t| t.hu)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::build::{ball, below, cut};
+
+    #[test]
+    fn bone_beside_air_blurs_straight_from_one_to_the_other() {
+        let (head, sinus) = (ball([0.0; 3], 50.0), below([0.0; 3], [1.0, 0.0, 0.0]));
+        let mut layers = Layers {
+            background_hu: AIR_HU,
+            tissues: Vec::new(),
+        };
+        layers.soft(Arc::clone(&head), SOFT_HU);
+        layers.soft(Arc::clone(&sinus), AIR_HU);
+        layers.bone(cut(head, sinus, 0.0), BONE_HU);
+        for i in -10..=10 {
+            let x = f64::from(i) / 20.0;
+            let expected = AIR_HU + (0.5 + x) * (BONE_HU - AIR_HU);
+            let hu = layers.mean_hu([x, 1.0, 2.0], 1.0);
+            assert!((hu - expected).abs() < 1e-9, "{x}: {hu}");
+        }
     }
 }

@@ -5,14 +5,15 @@
 //! signed distance of any point to its bone surface. [`scan`] turns it into Hounsfield units
 //! with partial volume, the scanner's blur and seeded noise, on any grid: axial, sagittal,
 //! coronal, oblique, tilted, reversed, prone, on the side. [`write_phantom`] adds a DICOM series and a JSON file
-//! with the truth.
+//! with the truth. [`BoneSurface`] measures how far a mesh is from it.
 //!
 //! A scan is the same to the last bit for any number of threads.
 //!
 //! Limits: blur acts in the slice only, across slices there is the slice's own thickness; noise
 //! is white, without streaks or beam hardening. Distances of femur and head are lower bounds
-//! near blends and where several parts are near; sign and surface are right everywhere. The
-//! head is drawn by hand to look like one, with adult lengths; it is nobody's.
+//! near blends and where several parts are near; sign and surface are right everywhere, and
+//! [`BoneSurface`] finds the nearest point of the surface wherever one asks. The head is drawn by
+//! hand to look like one, with adult lengths; it is nobody's.
 //!
 //! ```
 //! use bonemesh_phantom::{Phantom, scan, write_phantom};
@@ -43,6 +44,7 @@ mod primitives;
 mod scan;
 mod settings;
 mod shape;
+mod surface;
 mod truth;
 mod vector;
 
@@ -54,4 +56,5 @@ pub use models::model_images;
 pub use orientation::{ORIENTATIONS, Orientation, PatientPosition};
 pub use scan::scan;
 pub use settings::ScanSettings;
+pub use surface::{BoneSurface, Nearest};
 pub use truth::{WrittenPhantom, truth, write_phantom};

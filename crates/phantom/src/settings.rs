@@ -45,6 +45,21 @@ impl ScanSettings {
         }
     }
 
+    /// The same field of view, up to a voxel, with pixels of `pixel_mm` and slices of `slice_mm`.
+    #[must_use]
+    pub fn with_voxels(&self, pixel_mm: f64, slice_mm: f64) -> Self {
+        let as_long =
+            |n: usize, old: f64, new: f64| ((n as f64 * old / new).ceil() as usize).max(1);
+        Self {
+            columns: as_long(self.columns, self.pixel_mm[0], pixel_mm),
+            rows: as_long(self.rows, self.pixel_mm[1], pixel_mm),
+            slices: as_long(self.slices, self.slice_mm, slice_mm),
+            pixel_mm: [pixel_mm; 2],
+            slice_mm,
+            ..self.clone()
+        }
+    }
+
     /// The same scan without blur and noise.
     #[must_use]
     pub fn ideal(&self) -> Self {

@@ -61,5 +61,6 @@ pub(crate) fn femur() -> Known {
             ("medial_condyle", [-22.0, 12.0, -186.0]),
             ("lateral_condyle", [22.0, 9.0, -184.0]),
         ],
+        structures: Vec::new(),
     }
 }

@@ -11,7 +11,7 @@ mod vault;
 
 use super::Known;
 use crate::body::{AIR_HU, BONE_HU, Layers};
-use crate::shape::build::{cut, union};
+use crate::shape::build::{Solid, cut, union};
 
 /// Enamel and dentine as one (HU).
 const TOOTH_HU: f64 = 2000.0;
@@ -54,5 +54,19 @@ pub(crate) fn head() -> Known {
             ),
             ("chin", jaw::CHIN),
         ],
+        structures: structures(),
     }
+}
+
+/// Whose surfaces make up the surface of the bone.
+fn structures() -> Vec<(&'static str, Solid)> {
+    let mut parts = vec![
+        ("jaw", jaw::jaw()),
+        ("teeth", teeth::teeth()),
+        ("burr hole", vault::burr_hole()),
+        ("septum, conchae, pterygoid plates", face::partitions()),
+    ];
+    parts.extend(vault::structures());
+    parts.extend(face::structures());
+    parts
 }

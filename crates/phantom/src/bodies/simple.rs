@@ -53,5 +53,6 @@ fn known(shape: Shape, volume_mm3: f64, parameters: Vec<(&'static str, f64)>) ->
         volume_mm3: Some(volume_mm3),
         parameters,
         landmarks: vec![("centre", [0.0; 3])],
+        structures: Vec::new(),
     }
 }

@@ -60,6 +60,12 @@ fn midpoint(a: Vec3, b: Vec3) -> Vec3 {
 }
 
 impl Shape {
+    /// Centre and radius of a ball around the solid.
+    pub(crate) fn around(&self) -> (Vec3, f64) {
+        let ball = self.ball();
+        (ball.centre, ball.radius)
+    }
+
     /// A ball around the solid.
     pub(super) fn ball(&self) -> Ball {
         match self {

@@ -31,6 +31,16 @@ pub(super) fn solid() -> Solid {
     )
 }
 
+/// Surfaces by name.
+pub(super) fn structures() -> Vec<(&'static str, Solid)> {
+    vec![
+        ("orbit", both_sides(orbit())),
+        ("nasal cavity", nasal_cavity()),
+        ("sinuses", sinuses()),
+        ("face", solid()),
+    ]
+}
+
 /// The bone that holds the upper teeth.
 fn upper_ridge() -> Solid {
     let line = |z: f64, reach: f64| -> Vec<Vec3> {

@@ -44,10 +44,27 @@ fn above_base(up: f64) -> Solid {
     blended(4.0, vec![front, common(4.0, vec![lower, behind_the_step])])
 }
 
+fn outer() -> Solid {
+    common(8.0, vec![form(), above_base(0.0)])
+}
+
+fn inner() -> Solid {
+    common(8.0, vec![grow(&form(), -WALL), above_base(WALL)])
+}
+
+/// Surfaces by name.
+pub(super) fn structures() -> Vec<(&'static str, Solid)> {
+    vec![
+        ("braincase, outside", outer()),
+        ("braincase, inside", inner()),
+        ("skull base", shell()),
+        ("spinal and ear canals", openings()),
+    ]
+}
+
 /// The wall of the braincase with what grows on it.
 pub(super) fn shell() -> Solid {
-    let outer = common(8.0, vec![form(), above_base(0.0)]);
-    let inner = common(8.0, vec![grow(&form(), -WALL), above_base(WALL)]);
+    let (outer, inner) = (outer(), inner());
     let mastoid = cone([51.0, 26.0, -36.0], 13.0, [49.0, 21.0, -60.0], 5.5);
     let petrous = cone([48.0, 16.0, -38.0], 10.0, [16.0, -6.0, -36.0], 6.0);
     let occipital_condyle = cone([13.0, 24.0, -50.0], 5.0, [9.0, 14.0, -51.0], 4.0);
