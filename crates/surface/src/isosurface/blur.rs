@@ -26,6 +26,9 @@ const BLUNTEST: f64 = 0.8;
 const ACROSS: (f32, f32) = (0.3, 0.8);
 /// Width, in standard deviations of the blur, from which a wall's shape tells the blur.
 const SURE_WIDTH: f32 = 1.8;
+/// Steps without a layer look so much broader than the blur says, which the sharpest ones told:
+/// measured on a phantom head at faces of bone towards its sinuses.
+const BROADER: f32 = 1.25;
 /// Fewer edges tell nothing.
 const LEAST_EDGES: usize = 30;
 /// Edges looked at.
@@ -103,7 +106,8 @@ pub(super) fn level_hu(edge: &Edge, blur: Option<Blur>, has_soft_tissue: bool) -
     let contrast_hu = match edge.layer {
         Some(apart) if has_soft_tissue => {
             let soft = (layer::SOFT_HU - edge.low_hu) / edge.contrast_hu();
-            2.0 * (1.0 - layer::part_at_edge(soft, apart / deviation)) * edge.contrast_hu()
+            2.0 * (1.0 - layer::part_at_edge(soft, apart / (BROADER * deviation)))
+                * edge.contrast_hu()
         }
         _ => edge.contrast_hu(),
     };
