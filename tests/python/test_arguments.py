@@ -307,6 +307,7 @@ ODD = [
 
 def test_odd_values_never_panic(mesh, volume):
     """Every function with every odd value in every place: an exception of the right kind, or none."""
+    shell = bonemesh.PhantomSurface("sphere-shell")
     calls = {
         bonemesh.Mesh: [2, []],
         bonemesh.Volume: [2, []],
@@ -330,6 +331,9 @@ def test_odd_values_never_panic(mesh, volume):
         bonemesh.read_series: [2, []],
         bonemesh.read_mesh: [1, []],
         bonemesh.phantom: [1, ["coarser", "orientation", "psf_px", "noise_hu", "seed"]],
+        shell.nearest: [1, ["crease_mm", "threads"]],
+        shell.samples: [1, ["seed", "threads"]],
+        bonemesh.PhantomSurface: [1, []],
     }
     good = {
         bonemesh.Mesh: [*TRIANGLE],
@@ -351,6 +355,9 @@ def test_odd_values_never_panic(mesh, volume):
         bonemesh.read_series: ["no such folder", 1],
         bonemesh.read_mesh: ["no such file.stl"],
         bonemesh.phantom: ["curved"],
+        shell.nearest: [CUBE],
+        shell.samples: [3],
+        bonemesh.PhantomSurface: ["tube"],
     }
     needed = {
         bonemesh.sample: {"percent": 50},

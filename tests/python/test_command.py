@@ -196,6 +196,19 @@ def test_phantoms(command, tmp_path):
     assert (tmp_path / "tube" / "truth.json").is_file()
 
 
+def test_a_phantom_is_scanned_as_asked(command, tmp_path):
+    words = "--pixel 1 --slice 2.5 --blur 0.5 --noise 7 --seed 3".split()
+    answer = command("phantom", "tube", tmp_path / "tube", *words, "--json")
+    assert answer.code == DONE, answer.err
+    volume = bonemesh.read_series(answer.json["series"])
+    same = bonemesh.phantom(
+        "tube", pixel_mm=1, slice_mm=2.5, psf_px=0.5, noise_hu=7, seed=3
+    )
+    assert (volume.hu == same.hu).all()
+    odd = command("phantom", "tube", tmp_path / "odd", "--noise", "-1")
+    assert odd.code != DONE and not (tmp_path / "odd").exists()
+
+
 def test_progress_and_json_never_mix(command, ct_folder, tmp_path):
     answer = command("render", ct_folder, "-o", tmp_path / "x.stl", "--json")
     assert answer.out.count("\n") == 1 and answer.out.startswith("{")

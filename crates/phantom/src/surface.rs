@@ -43,7 +43,7 @@ pub struct BoneSurface {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
     /// How far it is, negative where the other point lies in bone. Right to 0.005 mm up to 1 mm,
-    /// to half a percent beyond.
+    /// to half a percent beyond; may be infinite for points metres away.
     pub distance_mm: f64,
     /// The point of the surface.
     pub point_mm: [f64; 3],
@@ -55,6 +55,8 @@ pub struct Nearest {
     pub wall_mm: f64,
     /// Way from the point to the next bone, straight out; at most 20 mm are looked at.
     pub gap_mm: f64,
+    /// Way from the point to air, straight out; at most 20 mm are looked at.
+    pub air_mm: f64,
     /// Hounsfield units of what touches the bone there.
     pub outside_hu: f64,
     /// Which of [`BoneSurface::structures`] the surface belongs to.
@@ -103,6 +105,7 @@ impl BoneSurface {
             crease: foot.is_at_crease(&self.bone, crease_mm),
             wall_mm: foot::wall(&self.bone, point_mm, normal),
             gap_mm: foot::gap(&self.bone, point_mm, normal),
+            air_mm: foot::way_to_air(&self.layers, point_mm, normal),
             outside_hu: self.layers.hu(foot.beside(BESIDE_MM)),
             structure: self.structure(point_mm),
         }

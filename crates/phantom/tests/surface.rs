@@ -165,6 +165,23 @@ fn a_thin_wall_alone_is_no_crease() {
 }
 
 #[test]
+fn skin_is_measured_to_the_air_behind_it() {
+    let surface = BoneSurface::of(Phantom::Head).unwrap();
+    let crown = surface.nearest([28.5, 34.0, 67.3], CREASE_MM);
+    let body = Phantom::Head.body().unwrap();
+    let at = |s: f64| {
+        body.hu(std::array::from_fn(|i| {
+            crown.point_mm[i] + s * crown.normal[i]
+        }))
+    };
+    assert!(crown.air_mm > 1.0 && crown.air_mm < 5.0, "{crown:?}");
+    assert!(at(crown.air_mm - 0.02) > 0.0);
+    assert!(at(crown.air_mm + 0.02) < -900.0);
+    let shell = BoneSurface::of(Phantom::SphereShell).unwrap();
+    assert!(shell.nearest([37.0, 0.0, 0.0], CREASE_MM).air_mm >= 20.0);
+}
+
+#[test]
 fn volumes_are_those_of_the_formulas() {
     for phantom in [Phantom::SphereShell, Phantom::Tube, Phantom::BoxWithHole] {
         let truth = bonemesh_phantom::truth(phantom, &phantom.settings()).unwrap();
@@ -218,6 +235,17 @@ fn cancelled_work_ends() {
     assert!(surface.samples(10, 0, &task).is_err());
     assert!(surface.volume_mm3(1.0, &task).is_err());
     assert!(surface.nearest_of_all(&[[0.0; 3]], 1.2, &task).is_err());
+}
+
+#[test]
+fn points_at_the_end_of_the_world_have_an_answer() {
+    let surface = BoneSurface::of(Phantom::Head).unwrap();
+    for far in [1e4, 1e9, 1e154, 1e308] {
+        let found = surface.nearest([far, -far, far], CREASE_MM);
+        assert!(found.distance_mm > 1e4, "{found:?}");
+    }
+    let near = surface.nearest([1000.0, 0.0, 0.0], CREASE_MM);
+    assert!(near.distance_mm > 920.0 && near.distance_mm < 940.0);
 }
 
 #[test]

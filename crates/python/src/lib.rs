@@ -24,6 +24,7 @@ mod region;
 mod render;
 mod report;
 mod series;
+mod surface;
 mod tetrahedra;
 mod thresholds;
 mod views;
@@ -53,9 +54,11 @@ mod _native {
     #[pymodule_export]
     use crate::region::select_roi;
     #[pymodule_export]
-    use crate::render::render;
+    use crate::render::{methods, render};
     #[pymodule_export]
     use crate::series::{LeftOut, Scan, Series, find_series, read_series, scan};
+    #[pymodule_export]
+    use crate::surface::PhantomSurface;
     #[pymodule_export]
     use crate::tetrahedra::{alpha_surface, tetrahedralize};
     #[pymodule_export]

@@ -16,6 +16,8 @@ use crate::volume::Volume;
 #[derive(Clone, Copy)]
 struct Changes<'a> {
     coarser: f64,
+    pixel_mm: Option<f64>,
+    slice_mm: Option<f64>,
     orientation: Option<&'a str>,
     psf_px: Option<f64>,
     noise_hu: Option<f64>,
@@ -27,16 +29,19 @@ struct Changes<'a> {
 /// - `name`: "line", "cylinder", "cube", "two-cubes", "cube-with-hole" and "curved" are drawn in
 ///   pixels; "sphere-shell", "tube", "femur", "box-with-hole" and "head" are bodies in mm.
 /// - `coarser`: voxels this many times as long over the same field of view.
+/// - `pixel_mm`, `slice_mm`: other lengths of the voxels instead, over the same field of view.
 /// - `orientation`: "axial", "reversed", "sagittal", "coronal", "oblique", "tilted", "feet-first",
 ///   "prone", "decubitus-left", "decubitus-right".
 /// - `psf_px`, `noise_hu`, `seed`: blur in pixels, noise in HU and its seed; None is as usual.
 #[pyfunction]
-#[pyo3(signature = (name, *, coarser=1.0, orientation=None, psf_px=None, noise_hu=None, seed=None, threads=None, progress=None, cancel=None))]
+#[pyo3(signature = (name, *, coarser=1.0, pixel_mm=None, slice_mm=None, orientation=None, psf_px=None, noise_hu=None, seed=None, threads=None, progress=None, cancel=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments, as Python has them
 pub(crate) fn phantom(
     py: Python<'_>,
     name: &str,
     coarser: f64,
+    pixel_mm: Option<f64>,
+    slice_mm: Option<f64>,
     orientation: Option<&str>,
     psf_px: Option<f64>,
     noise_hu: Option<f64>,
@@ -48,6 +53,8 @@ pub(crate) fn phantom(
     let watch = Watch::new(py, progress, cancel)?;
     let changes = Changes {
         coarser,
+        pixel_mm,
+        slice_mm,
         orientation,
         psf_px,
         noise_hu,
@@ -67,13 +74,15 @@ pub(crate) fn phantom(
 /// `path` is a folder to make; the answer names its `series` folder, `files` and `truth` (JSON).
 /// The other arguments are those of `phantom`.
 #[pyfunction]
-#[pyo3(signature = (name, path, *, coarser=1.0, orientation=None, psf_px=None, noise_hu=None, seed=None, threads=None, progress=None, cancel=None))]
+#[pyo3(signature = (name, path, *, coarser=1.0, pixel_mm=None, slice_mm=None, orientation=None, psf_px=None, noise_hu=None, seed=None, threads=None, progress=None, cancel=None))]
 #[allow(clippy::too_many_arguments)] // keyword arguments, as Python has them
 pub(crate) fn write_phantom<'py>(
     py: Python<'py>,
     name: &str,
     path: PathBuf,
     coarser: f64,
+    pixel_mm: Option<f64>,
+    slice_mm: Option<f64>,
     orientation: Option<&str>,
     psf_px: Option<f64>,
     noise_hu: Option<f64>,
@@ -85,6 +94,8 @@ pub(crate) fn write_phantom<'py>(
     let watch = Watch::new(py, progress, cancel)?;
     let changes = Changes {
         coarser,
+        pixel_mm,
+        slice_mm,
         orientation,
         psf_px,
         noise_hu,
@@ -115,6 +126,19 @@ fn chosen(py: Python<'_>, name: &str, changes: Changes<'_>) -> PyResult<(Phantom
         return Err(errors::argument(py, &message));
     }
     let mut settings = phantom.settings().coarser(changes.coarser);
+    let lengths = [
+        ("pixel_mm", changes.pixel_mm.unwrap_or(settings.pixel_mm[0])),
+        ("slice_mm", changes.slice_mm.unwrap_or(settings.slice_mm)),
+    ];
+    for (name, length) in lengths {
+        if !(0.05..=100.0).contains(&length) {
+            let message = format!("{name} is {length}; give a number from 0.05 to 100");
+            return Err(errors::argument(py, &message));
+        }
+    }
+    if changes.pixel_mm.is_some() || changes.slice_mm.is_some() {
+        settings = settings.with_voxels(lengths[0].1, lengths[1].1);
+    }
     if let Some(orientation) = changes.orientation {
         settings.orientation = orientation.parse::<Orientation>().map_err(unusable)?;
     }

@@ -19,6 +19,12 @@ enum Source {
     Volume(Arc<bonemesh::Volume>),
 }
 
+/// Names of the methods that `render` has, in the order in which they are offered.
+#[pyfunction]
+pub(crate) fn methods() -> Vec<&'static str> {
+    Method::ALL.map(Method::name).to_vec()
+}
+
 /// Make the surface of the bone in a CT folder or volume: `Mesh` in patient millimetres (LPS).
 ///
 /// - `threshold_hu`: bone is strictly above it; 350 suits skulls, 600 the cortical bone of limbs.

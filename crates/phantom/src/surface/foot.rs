@@ -1,5 +1,6 @@
 //! What a surface is like at a point: where it faces, whether it turns there, how thick the wall is.
 
+use crate::body::{Body, Layers};
 use crate::shape::Shape;
 use crate::shape::build::Solid;
 use crate::vector::{Vec3, add, cross, dot, length, scale, sub, unit};
@@ -15,6 +16,9 @@ const TURN: f64 = 0.906;
 const DIRECTIONS: u8 = 8;
 /// Walls and gaps are followed so far (mm).
 const LONGEST: f64 = 20.0;
+
+/// Between air and fat.
+const AIR_LIKE_HU: f64 = -500.0;
 
 /// Direction in which the field grows, and how fast.
 pub(super) fn gradient(solid: &Shape, p: Vec3) -> Vec3 {
@@ -116,6 +120,20 @@ pub(super) fn wall(solid: &Shape, point: Vec3, normal: Vec3) -> f64 {
 /// Way to the next bone.
 pub(super) fn gap(solid: &Shape, point: Vec3, normal: Vec3) -> f64 {
     until(solid, point, normal, |d| d >= 0.0)
+}
+
+/// Way to the first place below [`AIR_LIKE_HU`].
+pub(super) fn way_to_air(layers: &Layers, point: Vec3, normal: Vec3) -> f64 {
+    let mut s = 1e-3;
+    while s < LONGEST {
+        let p = add(point, scale(normal, s));
+        if layers.hu(p) < AIR_LIKE_HU {
+            return s;
+        }
+        let surfaces = layers.tissues.iter().map(|t| t.shape.distance(p).abs());
+        s += surfaces.fold(LONGEST, f64::min).max(1e-2);
+    }
+    LONGEST
 }
 
 /// How far `on` holds along a ray, from just off the surface.

@@ -18,6 +18,7 @@ __all__ = [
     "LeftOut",
     "Mesh",
     "MeshError",
+    "PhantomSurface",
     "Scan",
     "Series",
     "Volume",
@@ -30,6 +31,7 @@ __all__ = [
     "label_components",
     "main",
     "mean_neighbour_distance",
+    "methods",
     "phantom",
     "point_cloud",
     "read_mesh",
@@ -202,6 +204,40 @@ class Mesh:
         cancel: Cancel | None = None,
     ) -> None: ...
 
+@final
+class PhantomSurface:
+    def __new__(cls, name: str) -> PhantomSurface: ...
+    @property
+    def structures(self) -> list[str]: ...
+    # distance_mm, point_mm, normal, crease, wall_mm, gap_mm, air_mm, outside_hu, structure.
+    def nearest(
+        self,
+        points: npt.ArrayLike,
+        *,
+        crease_mm: float = 1.2,
+        threads: SupportsIndex | None = None,
+        progress: _Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> dict[str, npt.NDArray[Any]]: ...
+    # (count, 3) mm.
+    def samples(
+        self,
+        count: SupportsIndex,
+        *,
+        seed: SupportsIndex = 0,
+        threads: SupportsIndex | None = None,
+        progress: _Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> npt.NDArray[np.float64]: ...
+    def volume_mm3(
+        self,
+        *,
+        cell_mm: float = 0.25,
+        threads: SupportsIndex | None = None,
+        progress: _Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> float: ...
+
 def scan(
     path: _Path,
     *,
@@ -311,6 +347,7 @@ def alpha_surface(
     progress: _Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Mesh: ...
+def methods() -> list[str]: ...
 def render(
     path_or_volume: _Path | Volume,
     *,
@@ -361,6 +398,8 @@ def phantom(
     name: str,
     *,
     coarser: float = 1.0,
+    pixel_mm: float | None = None,
+    slice_mm: float | None = None,
     orientation: _Orientation | None = None,
     psf_px: float | None = None,
     noise_hu: float | None = None,
@@ -374,6 +413,8 @@ def write_phantom(
     path: _Path,
     *,
     coarser: float = 1.0,
+    pixel_mm: float | None = None,
+    slice_mm: float | None = None,
     orientation: _Orientation | None = None,
     psf_px: float | None = None,
     noise_hu: float | None = None,
