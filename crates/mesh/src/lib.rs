@@ -40,21 +40,29 @@
 //! shape diameter function* (2008). Volume by the divergence theorem: Zhang and Chen, *Efficient
 //! feature extraction for 2D/3D objects in mesh representation* (2001).
 
+mod decimate;
+mod distance;
 mod error;
 mod exact;
 mod intersections;
 mod io;
 mod merge;
 mod mesh;
+mod parts;
+mod smooth;
+mod stars;
 mod thickness;
 mod topology;
 mod tree;
 mod vector;
 
+pub use decimate::{Decimated, Decimation, decimate};
 pub use error::MeshError;
 pub use intersections::{Intersection, Intersections, find_intersections};
 pub use io::{MeshFormat, check_target, read_mesh, write_mesh};
 pub use mesh::TriangleMesh;
+pub use parts::{Islands, Kept, RemovedPart, fill_cavities, keep_islands};
+pub use smooth::{Smoothed, smooth};
 pub use thickness::{WallThickness, wall_thickness};
 pub use topology::{Topology, check_topology};
 pub use tree::TriangleTree;
