@@ -2,10 +2,10 @@
 
 use super::squared_distance;
 use crate::tree::{Bounds, TriangleTree};
-use crate::vector::Vector;
+use crate::vector::{Vector, cross, dot, minus, plus_scaled};
 
-/// Halvings after which a piece that is not proven near counts as far.
-const MOST_HALVINGS: u32 = 6;
+/// Cuts after which a triangle that is not proven near counts as far.
+const MOST_CUTS: u32 = 1000;
 
 /// Asks one surface; kept from question to question to save allocations.
 pub(crate) struct Near<'a> {
@@ -37,11 +37,26 @@ impl<'a> Near<'a> {
     /// Whether all points of a triangle are within the distance; a no may be wrong by a hair.
     ///
     /// The distance to one triangle is convex, so a piece whose corners are all near the same one is
-    /// near it as a whole; a piece that lies over several is cut into four.
+    /// near it as a whole; a piece that lies over several is cut at their borders.
     pub(crate) fn holds_triangle(&mut self, corners: [Vector; 3]) -> bool {
         self.look_around(&corners);
         let limit = self.distance_mm * self.distance_mm;
-        is_covered(&self.nearby, corners, limit, MOST_HALVINGS)
+        let is_near = |other: &[Vector; 3]| {
+            corners
+                .iter()
+                .all(|&corner| squared_distance(corner, *other) <= limit)
+        };
+        if self.nearby.iter().any(is_near) {
+            return true;
+        }
+        let mut cuts = MOST_CUTS;
+        is_covered(
+            &self.nearby,
+            self.nearby.clone(),
+            corners.to_vec(),
+            limit,
+            &mut cuts,
+        )
     }
 
     /// Finds the triangles whose boxes come within the distance of the points' box.
@@ -74,29 +89,72 @@ impl<'a> Near<'a> {
     }
 }
 
-/// Whether pieces of the triangle, each near one of `nearby`, make up all of it.
-fn is_covered(nearby: &[[Vector; 3]], corners: [Vector; 3], limit: f64, halvings: u32) -> bool {
-    let is_near = |other: &[Vector; 3]| {
-        corners
+/// Whether pieces of `piece`, each near one of `all`, make up the whole of it.
+///
+/// What lies above or below the nearest triangle of `rest` is near it or not; what lies beside it is
+/// for the others to cover. Each cut takes one triangle off `rest`, so it comes to an end.
+fn is_covered(
+    all: &[[Vector; 3]],
+    mut rest: Vec<[Vector; 3]>,
+    piece: Vec<Vector>,
+    limit: f64,
+    cuts: &mut u32,
+) -> bool {
+    let holds = |other: &[Vector; 3], piece: &[Vector]| {
+        piece
             .iter()
             .all(|&corner| squared_distance(corner, *other) <= limit)
     };
-    if nearby.iter().any(is_near) {
+    if all.iter().any(|other| holds(other, &piece)) {
         return true;
     }
-    let is_lost = |&corner: &Vector| {
-        let mut nearby = nearby.iter();
-        !nearby.any(|other| squared_distance(corner, *other) <= limit)
+    let centre = [0, 1, 2]
+        .map(|axis| piece.iter().map(|corner| corner[axis]).sum::<f64>() / piece.len() as f64);
+    let distances = rest
+        .iter()
+        .map(|other| squared_distance(centre, *other))
+        .enumerate();
+    let Some((nearest, _)) = distances.min_by(|a, b| a.1.total_cmp(&b.1)) else {
+        return false;
     };
-    if halvings == 0 || corners.iter().any(is_lost) {
+    if *cuts == 0 {
         return false;
     }
-    let [a, b, c] = corners;
-    let middle = |p: Vector, q: Vector| [0, 1, 2].map(|axis| f64::midpoint(p[axis], q[axis]));
-    let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
-    [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
-        .into_iter()
-        .all(|piece| is_covered(nearby, piece, limit, halvings - 1))
+    *cuts -= 1;
+    let nearest = rest.swap_remove(nearest);
+    let [a, b, c] = nearest;
+    let normal = cross(minus(b, a), minus(c, a));
+    let mut within = piece;
+    for (from, to) in [(a, b), (b, c), (c, a)] {
+        let outward = cross(minus(to, from), normal);
+        let height = |place: Vector| dot(minus(place, from), outward);
+        let beside = part_above(&within, height);
+        within = part_above(&within, |place| -height(place));
+        if beside.len() > 2 && !is_covered(all, rest.clone(), beside, limit, cuts) {
+            return false;
+        }
+    }
+    within.len() < 3 || all.iter().any(|other| holds(other, &within))
+}
+
+/// The part of a convex piece where a linear function is not below 0.
+fn part_above(piece: &[Vector], height: impl Fn(Vector) -> f64) -> Vec<Vector> {
+    let mut part = Vec::with_capacity(piece.len() + 1);
+    for (number, &corner) in piece.iter().enumerate() {
+        let next = piece[(number + 1) % piece.len()];
+        let (here, there) = (height(corner), height(next));
+        if here >= 0.0 {
+            part.push(corner);
+        }
+        if here < 0.0 && there > 0.0 || here > 0.0 && there < 0.0 {
+            part.push(plus_scaled(
+                corner,
+                here / (here - there),
+                minus(next, corner),
+            ));
+        }
+    }
+    part
 }
 
 #[cfg(test)]

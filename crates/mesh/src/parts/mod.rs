@@ -60,12 +60,12 @@ pub fn keep_islands(mesh: &TriangleMesh, keep: Islands, task: &Task) -> Result<K
     let parts = Parts::of(mesh, task)?;
     let is_kept: Vec<bool> = match keep {
         Islands::AtLeastMm3(least) => {
-            let parts = parts.parts.iter();
+            let parts = parts.known.iter();
             parts.map(|part| part.volume_mm3.abs() >= least).collect()
         }
         Islands::Largest => {
             let islands = parts
-                .parts
+                .known
                 .iter()
                 .enumerate()
                 .filter(|(_, part)| !part.is_cavity);
@@ -74,11 +74,11 @@ pub fn keep_islands(mesh: &TriangleMesh, keep: Islands, task: &Task) -> Result<K
                 .rev()
                 .max_by(|(_, a), (_, b)| a.volume_mm3.abs().total_cmp(&b.volume_mm3.abs()));
             let largest = largest.map(|(number, _)| number);
-            (0..parts.parts.len()).map(|n| Some(n) == largest).collect()
+            (0..parts.known.len()).map(|n| Some(n) == largest).collect()
         }
     };
     let is_kept = parts
-        .parts
+        .known
         .iter()
         .enumerate()
         .map(|(number, part)| match part.parent {
@@ -104,14 +104,14 @@ pub fn fill_cavities(
     let most = at_most_mm3.map_or(Ok(f64::INFINITY), MeshError::volume)?;
     let parts = Parts::of(mesh, task)?;
     let is_filled = |part: &Part| part.is_cavity && part.volume_mm3.abs() <= most;
-    let is_kept = parts.parts.iter().map(|part| {
+    let is_kept = parts.known.iter().map(|part| {
         let mut at = Some(part);
         // A parent encloses more than its child, so this ends.
         while let Some(part) = at {
             if is_filled(part) {
                 return false;
             }
-            at = part.parent.map(|parent| &parts.parts[parent as usize]);
+            at = part.parent.map(|parent| &parts.known[parent as usize]);
         }
         true
     });
@@ -124,7 +124,7 @@ struct Parts<'a> {
     mesh: &'a TriangleMesh,
     /// The part of each triangle.
     labels: Labels,
-    parts: Vec<Part>,
+    known: Vec<Part>,
 }
 
 impl<'a> Parts<'a> {
@@ -139,14 +139,14 @@ impl<'a> Parts<'a> {
         Ok(Self {
             mesh,
             labels,
-            parts,
+            known: parts,
         })
     }
 
     /// The mesh of some parts, and what the others were.
     fn only(&self, is_kept: &[bool]) -> Result<Kept, MeshError> {
         let mut removed: Vec<RemovedPart> = self
-            .parts
+            .known
             .iter()
             .zip(is_kept)
             .filter(|(_, is_kept)| !**is_kept)
