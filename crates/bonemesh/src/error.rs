@@ -76,6 +76,12 @@ pub enum Error {
         /// Name of the method.
         method: &'static str,
     },
+    /// No island is as large as asked for.
+    #[error("no island is that large, the largest has {largest_mm3:.3} mm3; ask for less")]
+    NoIslandLeft {
+        /// Volume of the largest.
+        largest_mm3: f64,
+    },
     /// Points of one place have no neighbour distance.
     #[error(
         "every point has its nearest neighbours in its own place, so there is no alpha; take repeated points out or set alpha"

@@ -31,6 +31,7 @@
 //! The method is that of E. Rier, *Generation and segmentation of 3D models of bone from CT
 //! images based on 3D point clouds*, MASc thesis, McMaster University.
 
+mod after_care;
 mod check;
 pub mod cli;
 mod error;
@@ -44,6 +45,7 @@ mod settings;
 mod source;
 mod thresholds;
 
+pub use after_care::{AfterCare, AfterCareReport, Cavities, care_for};
 pub use check::{Place, PrintCheck, check, wall_thickness};
 pub use error::Error;
 pub use panics::hush_foreign_panics;
@@ -64,8 +66,9 @@ pub use bonemesh_cloud::{
 pub use bonemesh_delaunay::{DelaunayError, Points, Tetrahedra, tetrahedralize};
 pub use bonemesh_dicom::{DicomError, Gap, LeftOut, SeriesChoice, SeriesReport};
 pub use bonemesh_mesh::{
-    Intersection, Intersections, MeshError, TriangleMesh, TriangleTree, check_target,
-    find_intersections, read_mesh, write_mesh,
+    Decimated, Decimation, Intersection, Intersections, Islands, Kept, MeshError, RemovedPart,
+    Smoothed, TriangleMesh, TriangleTree, check_target, decimate, fill_cavities,
+    find_intersections, keep_islands, read_mesh, smooth, write_mesh,
 };
 pub use bonemesh_phantom::{
     Phantom, PhantomError, ScanSettings, WrittenPhantom, model_images, scan as scan_phantom,

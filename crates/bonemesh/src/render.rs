@@ -11,6 +11,7 @@ use bonemesh_surface::{IsosurfaceSettings, alpha_boundary, boundary_surface, iso
 use bonemesh_task::{Task, pool};
 use bonemesh_volume::Volume;
 
+use crate::after_care::cared_for;
 use crate::report::{RenderReport, Seconds, check};
 use crate::source::{Reading, Source};
 use crate::thresholds::chosen;
@@ -89,7 +90,10 @@ pub fn mesh_cloud(cloud: &PointCloud, settings: &Settings, task: &Task) -> Resul
             method: settings.method.name(),
         });
     }
-    pool(settings.threads)?.install(|| cloud_to_mesh(cloud, settings, Seconds::default(), task))
+    pool(settings.threads)?.install(|| {
+        let rendered = cloud_to_mesh(cloud, settings, Seconds::default(), task)?;
+        cared_for(rendered, &settings.after_care, task)
+    })
 }
 
 fn volume_to_mesh(volume: &Volume, settings: &Settings, task: &Task) -> Result<Rendered, Error> {
@@ -109,6 +113,7 @@ fn volume_to_mesh(volume: &Volume, settings: &Settings, task: &Task) -> Result<R
             volume_to_isosurface(volume, settings, seconds, task)?
         }
     };
+    rendered = cared_for(rendered, &settings.after_care, task)?;
     rendered.report.spacing_mm = Some(volume.geometry().spacing_mm());
     rendered.report.threshold_hu = Some(settings.threshold.hu());
     rendered.report.threshold_reason = chosen.reason;

@@ -5,6 +5,7 @@ use bonemesh_roi::Region;
 use bonemesh_task::Task;
 use serde::Serialize;
 
+use crate::after_care::AfterCareReport;
 use crate::memory::peak_mib;
 use crate::{Error, Settings, VERSION};
 
@@ -64,6 +65,8 @@ pub struct RenderReport {
     pub components: usize,
     /// Volume inside the mesh; with alpha it goes through the centres of the edge pixels.
     pub volume_mm3: f64,
+    /// What was done to the finished mesh; `None` if nothing was asked for.
+    pub after_care: Option<AfterCareReport>,
     /// Seconds of each step.
     pub seconds: Seconds,
     /// Peak memory of this process in MiB, where the system tells.
@@ -91,6 +94,7 @@ impl RenderReport {
             manifold: check.manifold,
             components: check.components,
             volume_mm3: check.volume_mm3,
+            after_care: None,
             seconds,
             peak_mib: peak_mib(),
             warnings: Vec::new(),

@@ -8,6 +8,8 @@ use bonemesh_dicom::SeriesChoice;
 use bonemesh_segment::{CannySettings, HuThreshold};
 use bonemesh_volume::CropBox;
 
+use crate::AfterCare;
+
 /// How the surface is made.
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -82,6 +84,8 @@ pub struct Settings {
     pub one_series: bool,
     /// Part of the points to use; `None` uses all.
     pub sampling: Option<Sampling>,
+    /// What is done to the finished mesh.
+    pub after_care: AfterCare,
     /// Worker threads; `None` is one per core. The result does not depend on it.
     pub threads: Option<NonZeroUsize>,
 }
@@ -102,6 +106,7 @@ impl Default for Settings {
             series: None,
             one_series: false,
             sampling: None,
+            after_care: AfterCare::default(),
             threads: None,
         }
     }

@@ -134,12 +134,50 @@ pub enum MeshError {
         /// What the operating system said.
         reason: String,
     },
+    /// A length that is negative, infinite or no number.
+    #[error("the {name} is {value}; give a length in mm from 0")]
+    Length {
+        /// What was to be a length.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A volume that is negative, infinite or no number.
+    #[error("the volume is {value}; give one in mm3 from 0")]
+    Volume {
+        /// What was to be a volume.
+        value: f64,
+    },
+    /// More triangles than decimation can number.
+    #[error("{triangles} triangles are too many to decimate (1,431,655,764); split the mesh")]
+    TooManyToDecimate {
+        /// How many there are.
+        triangles: usize,
+    },
     /// Stopped on request.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
 impl MeshError {
+    /// `value` if it is a volume, from 0.
+    pub(crate) fn volume(value: f64) -> Result<f64, Self> {
+        if value >= 0.0 && value.is_finite() {
+            Ok(value)
+        } else {
+            Err(Self::Volume { value })
+        }
+    }
+
+    /// `value` if it is a length, from 0.
+    pub(crate) fn length(name: &'static str, value: f64) -> Result<f64, Self> {
+        if value >= 0.0 && value.is_finite() {
+            Ok(value)
+        } else {
+            Err(Self::Length { name, value })
+        }
+    }
+
     /// The error for `path`, which could not be read because of `error`.
     pub(crate) fn reading(path: &Path, error: &io::Error) -> Self {
         let path = path.to_path_buf();

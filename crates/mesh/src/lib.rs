@@ -3,10 +3,12 @@
 //!
 //! [`check_topology`] looks at connections; [`find_intersections`] finds, exactly, triangles that pass
 //! through, overlap or touch one another; [`wall_thickness`] measures through the body.
+//! [`keep_islands`], [`fill_cavities`], [`smooth`] and [`decimate`] give a new mesh: what was a closed
+//! 2-manifold that passes through itself nowhere still is one, with the coordinates that a file holds.
 //!
 //! Limits: files hold 32-bit floats, so a mesh comes back rounded to them (about 0.00002 mm at
-//! 200 mm from the origin). Only STL, PLY, OBJ and 3MF are read and written. Nothing is repaired:
-//! triangles with two equal corners or no area are kept, and [`check_topology`] counts them.
+//! 200 mm from the origin). Only STL, PLY, OBJ and 3MF are read and written. Holes are
+//! not filled; triangles with two equal corners or no area are kept, and [`check_topology`] counts them.
 //!
 //! ```
 //! use bonemesh_mesh::{
@@ -38,23 +40,34 @@
 //! Möller and Trumbore, *Fast, minimum storage ray/triangle intersection* (1997); the cone of rays
 //! after Shapira, Shamir and Cohen-Or, *Consistent mesh partitioning and skeletonisation using the
 //! shape diameter function* (2008). Volume by the divergence theorem: Zhang and Chen, *Efficient
-//! feature extraction for 2D/3D objects in mesh representation* (2001).
+//! feature extraction for 2D/3D objects in mesh representation* (2001). Decimation: Garland and
+//! Heckbert, *Surface simplification using quadric error metrics* (1997); link condition: Dey,
+//! Edelsbrunner, Guha and Nekhayev, *Topology preserving edge contraction* (1999). Smoothing: Taubin,
+//! *A signal processing approach to fair surface design* (1995).
 
+mod decimate;
+mod distance;
 mod error;
 mod exact;
 mod intersections;
 mod io;
 mod merge;
 mod mesh;
+mod parts;
+mod smooth;
+mod stars;
 mod thickness;
 mod topology;
 mod tree;
 mod vector;
 
+pub use decimate::{Decimated, Decimation, decimate};
 pub use error::MeshError;
 pub use intersections::{Intersection, Intersections, find_intersections};
 pub use io::{MeshFormat, check_target, read_mesh, write_mesh};
 pub use mesh::TriangleMesh;
+pub use parts::{Islands, Kept, RemovedPart, fill_cavities, keep_islands};
+pub use smooth::{Smoothed, smooth};
 pub use thickness::{WallThickness, wall_thickness};
 pub use topology::{Topology, check_topology};
 pub use tree::TriangleTree;

@@ -8,6 +8,7 @@
 //! Limits: the module is private; `bonemesh`, the package around it, is what people import. Its
 //! signatures are written down in `python/bonemesh/__init__.pyi`.
 
+mod after_care;
 mod arrays;
 mod cancel;
 mod check;
@@ -37,6 +38,8 @@ use pyo3::prelude::*;
 mod _native {
     use super::{Bound, PyModule, PyModuleMethods, PyResult};
 
+    #[pymodule_export]
+    use crate::after_care::{decimate, fill_cavities, keep_islands, smooth};
     #[pymodule_export]
     use crate::cancel::Cancel;
     #[pymodule_export]

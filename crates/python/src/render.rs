@@ -3,9 +3,12 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use bonemesh::{Error, Method, Percent, Rendered, Sampler, Sampling, Settings, Task};
+use bonemesh::{
+    AfterCare, Decimation, Error, Method, Percent, Rendered, Sampler, Sampling, Settings, Task,
+};
 use pyo3::prelude::*;
 
+use crate::after_care::{Filled, Kept};
 use crate::cancel::Cancel;
 use crate::detach::{Watch, detached};
 use crate::errors;
@@ -40,6 +43,11 @@ pub(crate) fn methods() -> Vec<&'static str> {
 /// - `alpha_mm`: largest circumradius; None takes the mean distance to 100 neighbours.
 /// - `true_edges`: an isosurface lies at the true edges of the bone, else where the grey equals the
 ///   threshold.
+/// - `islands`: "largest", or the least volume (mm3) of the islands kept; None keeps all.
+/// - `cavities`: "all", or the largest volume (mm3) of the cavities filled; None fills none.
+/// - `smooth_mm`: smooth and move no vertex further than this; None does not smooth.
+/// - `triangles`, `decimate_mm`: take triangles away until so many are left, or as long as the surface
+///   moves no further than this.
 /// - `threads`: worker threads; None is one a core. The result does not depend on it.
 /// - `progress`: called as `progress(stage, fraction)` on this thread.
 /// - `cancel`: a `Cancel` that stops the work.
@@ -48,7 +56,8 @@ pub(crate) fn methods() -> Vec<&'static str> {
 #[pyfunction]
 #[pyo3(signature = (
     path_or_volume, *, threshold_hu=Threshold::skull(), method="alpha", sigma=1.0, series=None,
-    one_series=false, crop=None, sample_percent=None, sampler="uniform", seed=0, alpha_mm=None, true_edges=true, threads=None, progress=None,
+    one_series=false, crop=None, sample_percent=None, sampler="uniform", seed=0, alpha_mm=None, true_edges=true, islands=None,
+    cavities=None, smooth_mm=None, triangles=None, decimate_mm=None, threads=None, progress=None,
     cancel=None
 ))]
 #[allow(clippy::too_many_arguments)] // keyword arguments, as Python has them
@@ -66,6 +75,11 @@ pub(crate) fn render(
     seed: i128,
     alpha_mm: Option<f64>,
     true_edges: bool,
+    islands: Option<Kept>,
+    cavities: Option<Filled>,
+    smooth_mm: Option<f64>,
+    triangles: Option<usize>,
+    decimate_mm: Option<f64>,
     threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
     cancel: Option<&Cancel>,
@@ -81,6 +95,15 @@ pub(crate) fn render(
         crop: crop.map(|c| c.0),
         series: series.map(|s| s.0),
         one_series,
+        after_care: AfterCare {
+            islands: islands.map(|i| i.0),
+            cavities: cavities.map(|c| c.0),
+            smooth_mm,
+            decimation: Decimation {
+                triangles,
+                error_mm: decimate_mm,
+            },
+        },
         sampling: sampling(py, sample_percent, sampler, seed)?,
         threads: Threads::count(threads),
         ..Settings::default()

@@ -14,6 +14,7 @@ use bonemesh_volume::CropBox;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::after_care::{AfterCareArguments, Repair};
 use super::histogram::{HistogramArguments, HuChoice};
 use crate::settings::{Method, Sampling, Settings};
 
@@ -47,6 +48,8 @@ pub(super) enum Command {
         /// Mesh file (.stl, .ply, .obj, .3mf).
         mesh: PathBuf,
     },
+    /// Care for a mesh: take islands away, fill cavities, smooth, take triangles away.
+    Repair(Repair),
     /// Write a phantom as a DICOM CT series, with its truth beside it.
     Phantom(PhantomArguments),
 }
@@ -112,6 +115,8 @@ pub(super) struct SurfaceArguments {
     /// Puts an isosurface where the grey equals the threshold, not at the true edges of the bone.
     #[arg(long)]
     at_threshold: bool,
+    #[command(flatten)]
+    after_care: AfterCareArguments,
 }
 
 #[derive(Debug, Args)]
@@ -370,13 +375,14 @@ impl SurfaceArguments {
             method: self.method,
             alpha_mm: self.alpha,
             true_edges: !self.at_threshold,
+            after_care: self.after_care.settings(),
             ..Settings::default()
         }
     }
 }
 
 /// A path, Unicode or not, whose ending names a mesh format.
-fn mesh_file() -> impl TypedValueParser<Value = PathBuf> {
+pub(super) fn mesh_file() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|path| MeshFormat::of(&path).map(|_| path))
 }
 
@@ -398,7 +404,7 @@ fn thickness(text: &str) -> Result<ThicknessMm, String> {
     ThicknessMm::new(number(text)?).map_err(|e| e.to_string())
 }
 
-fn length_mm(text: &str) -> Result<f64, String> {
+pub(super) fn length_mm(text: &str) -> Result<f64, String> {
     let mm = number(text)?;
     if mm > 0.0 && mm.is_finite() {
         Ok(mm)

@@ -14,7 +14,7 @@ use super::arguments::{
     CloudArguments, Command, Info, MeshArguments, PhantomArguments, Render, Roi,
 };
 use super::output::Answer;
-use super::{histogram, text};
+use super::{after_care, histogram, text};
 use crate::region::{RegionRequest, select_roi};
 use crate::render::{Rendered, mesh_cloud, point_cloud, render};
 use crate::source::{Reading, Source};
@@ -31,6 +31,7 @@ pub(super) fn run(command: &Command, task: &Task) -> Result<Answer, String> {
         Command::Mesh(arguments) => run_mesh(arguments, task),
         Command::Roi(arguments) => run_roi(arguments, task),
         Command::Check { mesh } => run_check(mesh, task),
+        Command::Repair(arguments) => after_care::run(arguments, task),
         Command::Phantom(arguments) => run_phantom(arguments, task),
     }
     .map_err(|e| e.to_string())

@@ -3,6 +3,7 @@
 //! Exit codes: 0 done, 1 a failure that one line on stderr explains, 2 unusable arguments.
 //! Progress goes to stderr and only to a terminal. Ctrl-C stops the work and leaves no file.
 
+mod after_care;
 mod arguments;
 mod commands;
 mod histogram;

@@ -3,9 +3,9 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use crate::PrintCheck;
 use crate::report::{RegionReport, RenderReport};
 use crate::source::Contents;
+use crate::{AfterCareReport, PrintCheck};
 
 /// Files that `info` names one by one.
 const MAX_LEFT_OUT: usize = 50;
@@ -74,6 +74,9 @@ pub(super) fn rendered(report: &RenderReport, file: &Path) -> String {
         ));
     }
     line(format!("  {}", verdict(report.watertight, report.manifold)));
+    if let Some(report) = &report.after_care {
+        text.push_str(&after_care(report));
+    }
     if let Some(hu) = report.threshold_hu {
         text.push_str(&threshold(hu, report.threshold_reason.as_deref()));
     }
@@ -88,6 +91,40 @@ pub(super) fn rendered(report: &RenderReport, file: &Path) -> String {
     ));
     for warning in &report.warnings {
         line(format!("  note: {warning}"));
+    }
+    text
+}
+
+/// What was done to a finished mesh, a line each.
+pub(super) fn after_care(report: &AfterCareReport) -> String {
+    let mut text = String::new();
+    let parts = [
+        (
+            "islands taken away",
+            report.removed_islands,
+            report.removed_islands_mm3,
+        ),
+        (
+            "cavities taken away",
+            report.removed_cavities,
+            report.removed_cavities_mm3,
+        ),
+    ];
+    for (name, count, mm3) in parts.into_iter().filter(|(_, count, _)| *count > 0) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "  {count} {name}, {mm3:.1} mm3");
+    }
+    if let (Some(mm), Some(back)) = (report.largest_move_mm, report.put_back_vertices) {
+        let _ = writeln!(
+            text,
+            "  smoothed: moved up to {mm:.3} mm, {back} vertices left in place"
+        );
+    }
+    if let (Some(count), Some(held)) = (report.removed_triangles, report.held_vertices) {
+        let _ = writeln!(
+            text,
+            "  {count} triangles taken away, {held} vertices left as they were"
+        );
     }
     text
 }

@@ -10,6 +10,7 @@
 )]
 
 mod meet;
+mod passing;
 mod place;
 mod plane;
 mod segment;
@@ -17,6 +18,7 @@ mod segment;
 use robust::{Coord3D, orient3d};
 
 pub(crate) use meet::meet;
+pub(crate) use passing::{Passing, passing};
 pub(crate) use place::place;
 pub(crate) use plane::has_area;
 

@@ -17,6 +17,7 @@ use rayon::prelude::*;
 
 use crate::vector::{cross, dot, minus};
 use crate::{MeshError, TriangleMesh};
+pub(crate) use sets::Sets;
 use vertex::Incidence;
 
 /// Triangles or vertices done between two looks at the cancel switch.

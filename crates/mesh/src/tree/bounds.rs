@@ -15,7 +15,7 @@ impl Bounds {
     };
 
     /// The box of some points (mm).
-    pub(super) fn of(points_mm: &[[f64; 3]]) -> Self {
+    pub(crate) fn of(points_mm: &[[f64; 3]]) -> Self {
         points_mm.iter().fold(Self::NOTHING, |bounds, point| Self {
             low: [0, 1, 2].map(|axis| bounds.low[axis].min(rounded_down(point[axis]))),
             high: [0, 1, 2].map(|axis| bounds.high[axis].max(-rounded_down(-point[axis]))),

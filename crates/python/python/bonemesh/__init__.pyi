@@ -26,8 +26,11 @@ __all__ = [
     "alpha_surface",
     "canny",
     "check",
+    "decimate",
+    "fill_cavities",
     "find_series",
     "histogram",
+    "keep_islands",
     "label_components",
     "main",
     "mean_neighbour_distance",
@@ -40,6 +43,7 @@ __all__ = [
     "sample",
     "scan",
     "select_roi",
+    "smooth",
     "suggest_thresholds",
     "tetrahedralize",
     "wall_thickness",
@@ -362,6 +366,11 @@ def render(
     seed: SupportsIndex = 0,
     alpha_mm: float | None = None,
     true_edges: bool = True,
+    islands: Literal["largest"] | float | None = None,
+    cavities: Literal["all"] | float | None = None,
+    smooth_mm: float | None = None,
+    triangles: SupportsIndex | None = None,
+    decimate_mm: float | None = None,
     threads: SupportsIndex | None = None,
     progress: _Progress | None = None,
     cancel: Cancel | None = None,
@@ -388,6 +397,35 @@ def check(
     progress: _Progress | None = None,
     cancel: Cancel | None = None,
 ) -> dict[str, Any]: ...
+def keep_islands(
+    mesh: Mesh,
+    *,
+    islands: Literal["largest"] | float,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Mesh: ...
+def fill_cavities(
+    mesh: Mesh,
+    *,
+    cavities: Literal["all"] | float = ...,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Mesh: ...
+def smooth(
+    mesh: Mesh,
+    *,
+    tolerance_mm: float,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Mesh: ...
+def decimate(
+    mesh: Mesh,
+    *,
+    triangles: SupportsIndex | None = None,
+    error_mm: float | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Mesh: ...
 def wall_thickness(
     mesh: Mesh,
     *,

@@ -1,0 +1,182 @@
+//! What is done to a finished mesh: islands, cavities, smoothing, fewer triangles.
+
+use std::time::Instant;
+
+use bonemesh_mesh::{
+    Decimation, Islands, Kept, TriangleMesh, decimate, fill_cavities, keep_islands, smooth,
+};
+use bonemesh_task::Task;
+use serde::Serialize;
+
+use crate::Error;
+use crate::render::Rendered;
+use crate::report::check;
+
+/// Which cavities are filled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cavities {
+    /// All: medullary canals, sinuses, pores.
+    All,
+    /// Those of at most this volume (mm3).
+    AtMostMm3(f64),
+}
+
+/// What is done to a finished mesh, in the order of the fields; by default nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct AfterCare {
+    /// Which islands are kept; `None` keeps all.
+    pub islands: Option<Islands>,
+    /// Which cavities are filled; `None` fills none.
+    pub cavities: Option<Cavities>,
+    /// Smooths, and moves no vertex further than this (mm); `None` does not smooth.
+    pub smooth_mm: Option<f64>,
+    /// Takes triangles away until there are this many, or as far as an error bound allows.
+    pub decimation: Decimation,
+}
+
+/// What [`care_for`] did.
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize)]
+pub struct AfterCareReport {
+    /// Islands taken away.
+    pub removed_islands: usize,
+    /// Their volume, cavities counted in.
+    pub removed_islands_mm3: f64,
+    /// Cavities filled, and those that went with their islands.
+    pub removed_cavities: usize,
+    /// Their volume.
+    pub removed_cavities_mm3: f64,
+    /// The furthest that smoothing moved a vertex; `None` without smoothing.
+    pub largest_move_mm: Option<f64>,
+    /// Vertices that smoothing left in place, because the surface would have passed through itself.
+    pub put_back_vertices: Option<usize>,
+    /// Triangles that decimation took away; `None` without decimation.
+    pub removed_triangles: Option<usize>,
+    /// Vertices that decimation left alone with their triangles, because the surface would have
+    /// passed through itself or left the error bound.
+    pub held_vertices: Option<usize>,
+    /// Seconds that it took.
+    pub seconds: f64,
+}
+
+impl AfterCare {
+    /// Whether nothing is to be done.
+    pub fn is_nothing(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// Does to `mesh` what `care` asks for.
+///
+/// # Errors
+/// [`Error::NoIslandLeft`], [`Error::Mesh`] for a value that is no length or volume, or a
+/// cancelled task.
+pub fn care_for(
+    mesh: TriangleMesh,
+    care: &AfterCare,
+    task: &Task,
+) -> Result<(TriangleMesh, AfterCareReport), Error> {
+    let clock = Instant::now();
+    let mut report = AfterCareReport::default();
+    let mut mesh = mesh;
+    if let Some(islands) = care.islands {
+        let had_triangles = !mesh.triangles().is_empty();
+        let kept = keep_islands(&mesh, islands, task)?;
+        if had_triangles && kept.mesh.triangles().is_empty() {
+            let largest_mm3 = kept.removed.first().map_or(0.0, |part| part.volume_mm3);
+            return Err(Error::NoIslandLeft { largest_mm3 });
+        }
+        mesh = report.without(kept);
+    }
+    if let Some(cavities) = care.cavities {
+        let most = match cavities {
+            Cavities::All => None,
+            Cavities::AtMostMm3(most) => Some(most),
+        };
+        mesh = report.without(fill_cavities(&mesh, most, task)?);
+    }
+    if let Some(tolerance_mm) = care.smooth_mm {
+        let smoothed = smooth(&mesh, tolerance_mm, task)?;
+        report.largest_move_mm = Some(smoothed.largest_move_mm);
+        report.put_back_vertices = Some(smoothed.put_back);
+        mesh = smoothed.mesh;
+    }
+    if care.decimation != Decimation::default() {
+        let decimated = decimate(&mesh, care.decimation, task)?;
+        let left = decimated.mesh.triangles().len();
+        report.removed_triangles = Some(mesh.triangles().len() - left);
+        report.held_vertices = Some(decimated.held_vertices);
+        mesh = decimated.mesh;
+    }
+    report.seconds = clock.elapsed().as_secs_f64();
+    Ok((mesh, report))
+}
+
+impl AfterCareReport {
+    /// Notes what is gone and gives what is left.
+    fn without(&mut self, kept: Kept) -> TriangleMesh {
+        for part in &kept.removed {
+            if part.is_cavity {
+                self.removed_cavities += 1;
+                self.removed_cavities_mm3 += part.volume_mm3;
+            } else {
+                self.removed_islands += 1;
+                self.removed_islands_mm3 += part.volume_mm3;
+            }
+        }
+        kept.mesh
+    }
+}
+
+/// The rendered mesh after `care`, its report brought up to date.
+pub(crate) fn cared_for(
+    rendered: Rendered,
+    care: &AfterCare,
+    task: &Task,
+) -> Result<Rendered, Error> {
+    if care.is_nothing() {
+        return Ok(rendered);
+    }
+    let Rendered { mesh, mut report } = rendered;
+    let (mesh, done) = care_for(mesh, care, task)?;
+    let topology = check(&mesh, task)?;
+    report.vertices = topology.vertices;
+    report.triangles = topology.triangles;
+    report.watertight = topology.watertight;
+    report.manifold = topology.manifold;
+    report.components = topology.components;
+    report.volume_mm3 = topology.volume_mm3;
+    report.seconds.total += done.seconds;
+    report.after_care = Some(done);
+    Ok(Rendered { mesh, report })
+}
+
+/// `largest`, or a volume in mm3.
+///
+/// # Errors
+/// One line that says what to write instead.
+pub(crate) fn islands(text: &str) -> Result<Islands, String> {
+    match text {
+        "largest" => Ok(Islands::Largest),
+        _ => volume(text, "largest").map(Islands::AtLeastMm3),
+    }
+}
+
+/// `all`, or a volume in mm3.
+///
+/// # Errors
+/// One line that says what to write instead.
+pub(crate) fn cavities(text: &str) -> Result<Cavities, String> {
+    match text {
+        "all" => Ok(Cavities::All),
+        _ => volume(text, "all").map(Cavities::AtMostMm3),
+    }
+}
+
+fn volume(text: &str, word: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if (0.0..=f64::MAX).contains(&value) => Ok(value),
+        _ => Err(format!(
+            "`{text}` is no volume; write a number of mm3, or `{word}`"
+        )),
+    }
+}

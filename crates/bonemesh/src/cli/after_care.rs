@@ -1,0 +1,81 @@
+//! What is done to a finished mesh, as arguments; and `repair`, which does it to a file.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use bonemesh_mesh::{Decimation, Islands, read_mesh, write_mesh};
+use bonemesh_task::{Task, pool};
+use clap::Args;
+
+use super::arguments::{length_mm, mesh_file};
+use super::output::Answer;
+use super::text;
+use crate::Error;
+use crate::after_care::{self, AfterCare, Cavities, care_for};
+
+#[derive(Debug, Args)]
+pub(super) struct AfterCareArguments {
+    /// Keep only the `largest` island of the mesh, or all of at least this volume.
+    #[arg(long, value_name = "MM3", allow_negative_numbers = true, value_parser = after_care::islands)]
+    islands: Option<Islands>,
+    /// Fill `all` cavities inside the bone, or those of at most this volume.
+    #[arg(long, value_name = "MM3", allow_negative_numbers = true, value_parser = after_care::cavities)]
+    fill_cavities: Option<Cavities>,
+    /// Smooth, and move no vertex further than this.
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = length_mm)]
+    smooth: Option<f64>,
+    /// Take triangles away until this many are left.
+    #[arg(long, value_name = "COUNT")]
+    triangles: Option<usize>,
+    /// Take triangles away as long as the surface moves no further than this.
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = length_mm)]
+    decimate: Option<f64>,
+}
+
+impl AfterCareArguments {
+    pub(super) fn settings(&self) -> AfterCare {
+        AfterCare {
+            islands: self.islands,
+            cavities: self.fill_cavities,
+            smooth_mm: self.smooth,
+            decimation: Decimation {
+                triangles: self.triangles,
+                error_mm: self.decimate,
+            },
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Repair {
+    /// Mesh file (.stl, .ply, .obj, .3mf).
+    mesh: PathBuf,
+    /// Mesh file to write (.stl, .ply, .obj, .3mf).
+    #[arg(short, long, value_parser = mesh_file())]
+    output: PathBuf,
+    #[command(flatten)]
+    care: AfterCareArguments,
+    /// Worker threads; the result does not depend on it.
+    #[arg(long)]
+    threads: Option<NonZeroUsize>,
+}
+
+/// Does to a file's mesh what the arguments ask for.
+pub(super) fn run(arguments: &Repair, task: &Task) -> Result<Answer, Error> {
+    bonemesh_mesh::check_target(&arguments.output)?;
+    let mesh = read_mesh(&arguments.mesh, task)?;
+    let care = arguments.care.settings();
+    let (mesh, report) = pool(arguments.threads)?.install(|| care_for(mesh, &care, task))?;
+    write_mesh(&arguments.output, &mesh, task)?;
+    let (vertices, triangles) = (mesh.vertices_mm().len(), mesh.triangles().len());
+    let text = format!(
+        "{}\n  {triangles} triangles, {vertices} vertices\n{}  {:.2} s\n",
+        arguments.output.display(),
+        text::after_care(&report),
+        report.seconds
+    );
+    Ok(Answer::new(&report, text)
+        .with("vertices", vertices)
+        .with("triangles", triangles)
+        .with("output", arguments.output.to_string_lossy()))
+}

@@ -1,0 +1,133 @@
+//! Fewer triangles for the same surface.
+//!
+//! 1. `holds`: rims, and vertices that are no part of a manifold, stay where they are.
+//! 2. `Run::collapse`: the edge whose removal moves the surface least collapses to one vertex, at the
+//!    place with the least sum of squared distances to the planes of the triangles it stands for
+//!    (`quadric`); again and again. Collapses that would change the kind of surface, turn a triangle
+//!    over or squeeze it to a needle are passed over (`collapse`).
+//! 3. `faults`: triangles of the result that meet, exactly, or are too far from the given surface.
+//!    What the vertices of those stand for is held with all its triangles, and the same is done
+//!    again (`Run::repeat`), until there are none. Each time more is held, so it comes to an end.
+//!
+//! Only the edges' costs and the faults are found in parallel; collapsing is one thing after
+//! another, because each changes what may be done next to it.
+
+mod collapse;
+mod faults;
+mod quadric;
+mod run;
+
+use bonemesh_task::Task;
+
+use crate::stars::Stars;
+use crate::{MeshError, TriangleMesh};
+use faults::Comparison;
+use run::{End, Hold, Run, holds};
+
+/// Corners are numbered in 32 bits, and one number means none.
+const MOST_TRIANGLES: usize = u32::MAX as usize / 3 - 1;
+
+/// Part of the error bound that the mean distance to the planes may reach: with more, much is found
+/// to be too far and done again; with less, triangles stay that could go.
+const TYPICAL: f64 = 0.5;
+
+/// How far [`decimate`] goes; with neither, nothing is done.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Decimation {
+    /// Stops as soon as there are at most this many triangles.
+    pub triangles: Option<usize>,
+    /// The surface is not moved further than this (mm).
+    pub error_mm: Option<f64>,
+}
+
+/// What [`decimate`] gives.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Decimated {
+    /// The mesh, in coordinates that a file's 32-bit floats hold.
+    pub mesh: TriangleMesh,
+    /// Vertices of the given mesh that kept all their triangles, because otherwise the result would
+    /// have passed through itself or left the error bound.
+    pub held_vertices: usize,
+}
+
+/// Takes triangles away where that moves the surface least (Garland and Heckbert 1997).
+///
+/// The mesh is taken as its file gives it back ([`TriangleMesh::as_written`]). A closed 2-manifold
+/// stays one, with as many parts and holes through them; rims and vertices that are no part of a
+/// manifold stay in their places. Triangles of the result meet, exactly, only where those of
+/// the given mesh do. So the number asked for may not be reached.
+///
+/// [`Decimation::error_mm`] means: every point of the given surface is at most that far from the
+/// result, which is proven; and each corner, edge middle and centroid of the result's triangles is
+/// at most that far from the given surface, which is measured.
+///
+/// The result is the same for any number of threads.
+///
+/// # Errors
+/// [`MeshError::Length`] for an error bound that is no length, [`MeshError::NotFinite`] for a
+/// coordinate too large for a 32-bit float, [`MeshError::TooManyToDecimate`],
+/// [`MeshError::Cancelled`].
+pub fn decimate(
+    mesh: &TriangleMesh,
+    goal: Decimation,
+    task: &Task,
+) -> Result<Decimated, MeshError> {
+    let end = goal.end()?;
+    let given = mesh.as_written()?;
+    let triangles = given.triangles().len();
+    if triangles > MOST_TRIANGLES {
+        return Err(MeshError::TooManyToDecimate { triangles });
+    }
+    let stars = || Stars::new(given.vertices_mm().len(), given.triangles());
+    let mut holds = holds(&stars(), task)?;
+    let mut steps = Vec::new();
+    let mut held_vertices = 0;
+    loop {
+        task.begin("decimate", triangles.saturating_sub(end.triangles));
+        let mut run = Run::new(&given, stars(), &holds, task)?;
+        run.repeat(&steps, task)?;
+        run.collapse(end, task)?;
+        let standing = run.standing();
+        steps = run.steps;
+        let result = TriangleMesh::new(run.vertices_mm, run.stars.triangles().collect())?;
+        let comparison = Comparison {
+            given: &given,
+            result: &result,
+            standing: &standing,
+        };
+        let is_faulty = comparison.faulty_vertices(goal.error_mm, task)?;
+        let mut more = 0;
+        for (hold, &stands) in holds.iter_mut().zip(&standing) {
+            if is_faulty[stands as usize] && *hold != Hold::Star {
+                *hold = Hold::Star;
+                more += 1;
+            }
+        }
+        held_vertices += more;
+        if more == 0 {
+            let mesh = result.compacted();
+            return Ok(Decimated {
+                mesh,
+                held_vertices,
+            });
+        }
+    }
+}
+
+impl Decimation {
+    /// Where collapsing ends.
+    fn end(self) -> Result<End, MeshError> {
+        let mean_squared = match self.error_mm {
+            Some(error_mm) => (TYPICAL * MeshError::length("error bound", error_mm)?).powi(2),
+            None => f64::INFINITY,
+        };
+        let all = match self.error_mm {
+            Some(_) => 0,
+            None => usize::MAX,
+        };
+        Ok(End {
+            triangles: self.triangles.unwrap_or(all),
+            mean_squared,
+        })
+    }
+}

@@ -1,0 +1,326 @@
+//! Edges collapse, the cheapest first.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use bonemesh_task::{Cancelled, Task};
+use rayon::prelude::*;
+
+use super::collapse::Surroundings;
+use super::quadric::Quadric;
+use crate::TriangleMesh;
+use crate::stars::{MOST, Stars};
+use crate::vector::{Vector, dot, minus};
+
+/// Collapses or triangles between two looks at the cancel switch.
+const STRIDE: usize = 1 << 12;
+/// A tier is this part of all edges.
+const TIERS: usize = 8;
+/// What the length of an edge adds to its cost, so that short edges go first where all is flat.
+const LENGTH_COST: f64 = 1e-6;
+/// The version of a vertex that is gone; no other comes near it.
+const GONE: u32 = u32::MAX / 2;
+
+/// What may be done with a vertex.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Hold {
+    /// It may move and go.
+    Free,
+    /// It stays in its place, but neighbours may collapse onto it.
+    Place,
+    /// It stays with all triangles at it.
+    Star,
+}
+
+/// One collapse, as it was done.
+#[derive(Clone, Copy)]
+pub(super) struct Step {
+    kept: u32,
+    gone: u32,
+    place: Vector,
+}
+
+/// Where collapsing ends.
+#[derive(Clone, Copy)]
+pub(super) struct End {
+    /// No collapse below this many triangles.
+    pub(super) triangles: usize,
+    /// Largest mean squared distance (mm2) of a vertex to the planes it stands for.
+    pub(super) mean_squared: f64,
+}
+
+/// A mesh on its way to fewer triangles.
+pub(super) struct Run<'a> {
+    holds: &'a [Hold],
+    /// What quadrics take as the origin, so that digits are not lost.
+    middle: Vector,
+    pub(super) vertices_mm: Vec<Vector>,
+    pub(super) stars: Stars,
+    quadrics: Vec<Quadric>,
+    /// How often each vertex has changed.
+    versions: Vec<u32>,
+    pub(super) steps: Vec<Step>,
+}
+
+impl<'a> Run<'a> {
+    pub(super) fn new(
+        mesh: &TriangleMesh,
+        stars: Stars,
+        holds: &'a [Hold],
+        task: &Task,
+    ) -> Result<Self, Cancelled> {
+        let vertices_mm = mesh.vertices_mm().to_vec();
+        let middle = mesh.bounds_mm().map_or([0.0; 3], |[low, high]| {
+            [0, 1, 2].map(|axis| f64::midpoint(low[axis], high[axis]))
+        });
+        let mut quadrics = vec![Quadric::default(); vertices_mm.len()];
+        let chunks = quadrics.par_chunks_mut(STRIDE).enumerate();
+        chunks.try_for_each(|(chunk, quadrics)| {
+            let mut star = Vec::new();
+            for (vertex, quadric) in ((chunk * STRIDE) as u32..).zip(quadrics) {
+                stars.at(vertex, &mut star);
+                for &triangle in &star {
+                    let corners = mesh.corners_mm(triangle).map(|c| minus(c, middle));
+                    *quadric = quadric.plus(&Quadric::of(corners));
+                }
+            }
+            task.check()
+        })?;
+        Ok(Self {
+            holds,
+            middle,
+            versions: vec![0; vertices_mm.len()],
+            vertices_mm,
+            stars,
+            quadrics,
+            steps: Vec::new(),
+        })
+    }
+
+    /// Does the steps of an earlier run again, except where something is held now that was not
+    /// then, and where the surroundings therefore differ.
+    pub(super) fn repeat(&mut self, steps: &[Step], task: &Task) -> Result<(), Cancelled> {
+        let mut is_other: Vec<bool> = self.holds.iter().map(|h| *h == Hold::Star).collect();
+        let mut surroundings = Surroundings::default();
+        for (number, &step) in steps.iter().enumerate() {
+            if number % STRIDE == 0 {
+                task.check()?;
+            }
+            surroundings.load(&self.stars, step.kept, step.gone);
+            if surroundings.around().any(|v| is_other[v as usize]) {
+                is_other[step.kept as usize] = true;
+                is_other[step.gone as usize] = true;
+            } else {
+                self.apply(step);
+            }
+        }
+        Ok(())
+    }
+
+    /// Collapses edges until the end is reached or none can be collapsed any more.
+    pub(super) fn collapse(&mut self, end: End, task: &Task) -> Result<(), Cancelled> {
+        loop {
+            let before = self.steps.len();
+            self.sweep(end, task)?;
+            // What was refused may be possible now; a last handful is not worth another sweep.
+            let done = self.steps.len() - before;
+            if self.stars.alive() <= end.triangles || done <= self.stars.alive() / 1000 {
+                return Ok(());
+            }
+        }
+    }
+
+    /// Looks at each edge once, and again when one of its ends has changed.
+    fn sweep(&mut self, end: End, task: &Task) -> Result<(), Cancelled> {
+        let mut known = self.edges(end, task)?;
+        while !known.is_empty() && self.stars.alive() > end.triangles {
+            // In tiers of rising cost, so that the heap stays small: the order is the same.
+            let tier = known[known.len() / TIERS];
+            let begun = known.partition_point(|entry| *entry <= tier);
+            let mut later = known.split_off(begun);
+            self.tier(&known, tier, &mut later, end, task)?;
+            later.retain(|entry| self.is_current(*entry));
+            // Most of it is in order already, which this sort makes use of.
+            later.par_sort();
+            known = later;
+        }
+        Ok(())
+    }
+
+    /// Collapses all edges up to `last`; those that come up and cost more go to `later`.
+    fn tier(
+        &mut self,
+        known: &[u128],
+        last: u128,
+        later: &mut Vec<u128>,
+        end: End,
+        task: &Task,
+    ) -> Result<(), Cancelled> {
+        let mut known = known.iter().copied().peekable();
+        let mut changed: BinaryHeap<Reverse<u128>> = BinaryHeap::new();
+        let mut surroundings = Surroundings::default();
+        let mut star = Vec::new();
+        let mut looked = 0;
+        while self.stars.alive() > end.triangles {
+            let next = match (known.peek(), changed.peek()) {
+                (Some(a), Some(Reverse(b))) if b < a => changed.pop().map(|c| c.0),
+                (None, _) => changed.pop().map(|c| c.0),
+                _ => known.next(),
+            };
+            let Some(entry) = next else { break };
+            looked += 1;
+            if looked % STRIDE == 0 {
+                task.check()?;
+            }
+            if !self.is_current(entry) {
+                continue;
+            }
+            let Some(step) = self.allowed(ends(entry), &mut surroundings) else {
+                continue;
+            };
+            self.apply(step);
+            task.advance(2)?;
+            self.stars.at(step.kept, &mut star);
+            let beside = star.iter().map(|t| t[1]);
+            for entry in beside.filter_map(|v| self.entry(step.kept, v, end)) {
+                if entry <= last {
+                    changed.push(Reverse(entry));
+                } else {
+                    later.push(entry);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether neither end of an edge has changed since its entry was made.
+    fn is_current(&self, entry: u128) -> bool {
+        let [u, v] = ends(entry);
+        entry as u32 == self.stamp(u, v)
+    }
+
+    /// All edges that may be worth collapsing, the cheapest first.
+    fn edges(&self, end: End, task: &Task) -> Result<Vec<u128>, Cancelled> {
+        let triangles: Vec<[u32; 3]> = self.stars.triangles().collect();
+        let chunks = triangles
+            .par_chunks(STRIDE)
+            .map(|triangles| {
+                let edges = triangles
+                    .iter()
+                    .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+                // Where both triangles of an edge face the same way, each runs along it once.
+                let edges = edges.filter(|[u, v]| u < v);
+                let entries: Vec<u128> = edges.filter_map(|[u, v]| self.entry(u, v, end)).collect();
+                task.check()?;
+                Ok(entries)
+            })
+            .collect::<Result<Vec<_>, Cancelled>>()?;
+        let mut entries = chunks.concat();
+        entries.par_sort_unstable();
+        Ok(entries)
+    }
+
+    /// An edge's place in the order: cost, ends, and how often the ends had changed.
+    fn entry(&self, u: u32, v: u32, end: End) -> Option<u128> {
+        let (u, v) = (u.min(v), u.max(v));
+        let (_, cost, weight) = self.best(u, v)?;
+        if cost > end.mean_squared * weight {
+            return None;
+        }
+        let edge = minus(self.vertices_mm[u as usize], self.vertices_mm[v as usize]);
+        let cost = (cost + LENGTH_COST * weight * dot(edge, edge)) as f32;
+        // Singles from 0 up are in the order of their bits.
+        let [cost, u128_u, u128_v] = [cost.to_bits(), u, v].map(u128::from);
+        Some(cost << 96 | u128_u << 64 | u128_v << 32 | u128::from(self.stamp(u, v)))
+    }
+
+    fn stamp(&self, u: u32, v: u32) -> u32 {
+        self.versions[u as usize].wrapping_add(self.versions[v as usize])
+    }
+
+    /// The best place for both ends, and its quadric's sum and weight.
+    fn best(&self, u: u32, v: u32) -> Option<(Vector, f64, f64)> {
+        let quadric = self.quadrics[u as usize].plus(&self.quadrics[v as usize]);
+        let [p, q] = [u, v].map(|v| self.vertices_mm[v as usize]);
+        let at = |place: Vector| (place, quadric.at(minus(place, self.middle)), quadric.weight);
+        match [u, v].map(|v| self.holds[v as usize]) {
+            [Hold::Place, Hold::Free] => Some(at(p)),
+            [Hold::Free, Hold::Place] => Some(at(q)),
+            [Hold::Free, Hold::Free] => {
+                let middle = [0, 1, 2].map(|axis| f64::midpoint(p[axis], q[axis]));
+                let least = quadric.least_near(minus(middle, self.middle));
+                let least = [0, 1, 2].map(|axis| single(least[axis] + self.middle[axis]));
+                let (edge, away) = (minus(p, q), minus(least, middle));
+                if dot(away, away) <= dot(edge, edge) {
+                    return Some(at(least));
+                }
+                let all = [p, q, middle.map(single)].map(at);
+                all.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
+            }
+            _ => None,
+        }
+    }
+
+    /// The collapse of an edge, if the surface stays sound.
+    fn allowed(&self, [u, v]: [u32; 2], surroundings: &mut Surroundings) -> Option<Step> {
+        let (place, _, _) = self.best(u, v)?;
+        let (kept, gone) = match self.holds[v as usize] {
+            Hold::Free => (u, v),
+            _ => (v, u),
+        };
+        surroundings.load(&self.stars, kept, gone);
+        let is_held = |v: u32| self.holds[v as usize] == Hold::Star;
+        (surroundings.keeps_topology(kept, gone)
+            && !surroundings.around().any(is_held)
+            && surroundings.keeps_shape(&self.vertices_mm, [kept, gone], place))
+        .then_some(Step { kept, gone, place })
+    }
+
+    fn apply(&mut self, step: Step) {
+        let [kept, gone] = [step.kept as usize, step.gone as usize];
+        self.stars.collapse(step.kept, step.gone);
+        self.quadrics[kept] = self.quadrics[kept].plus(&self.quadrics[gone]);
+        self.vertices_mm[kept] = step.place;
+        self.versions[kept] += 1;
+        self.versions[gone] = GONE;
+        self.steps.push(step);
+    }
+
+    /// For each vertex of the given mesh the one that stands for it now.
+    pub(super) fn standing(&self) -> Vec<u32> {
+        let mut standing: Vec<u32> = (0..self.vertices_mm.len() as u32).collect();
+        // Whoever a vertex collapsed into only went later.
+        for step in self.steps.iter().rev() {
+            standing[step.gone as usize] = standing[step.kept as usize];
+        }
+        standing
+    }
+}
+
+/// The ends of an entry's edge.
+fn ends(entry: u128) -> [u32; 2] {
+    [(entry >> 64) as u32, (entry >> 32) as u32]
+}
+
+/// The nearest number that a file can hold.
+fn single(value: f64) -> f64 {
+    f64::from(value as f32)
+}
+
+/// What may be done with each vertex: only those with one closed fan of triangles are free.
+pub(super) fn holds(stars: &Stars, task: &Task) -> Result<Vec<Hold>, Cancelled> {
+    let is_closed = stars.closed_fans(task)?;
+    let mut star = Vec::new();
+    let hold = |(vertex, is_closed): (u32, bool)| {
+        if is_closed {
+            return Hold::Free;
+        }
+        stars.at(vertex, &mut star);
+        if star.len() > MOST {
+            Hold::Star
+        } else {
+            Hold::Place
+        }
+    };
+    Ok((0..).zip(is_closed).map(hold).collect())
+}

@@ -1,0 +1,170 @@
+//! Parts of a mesh that share no vertex: islands of bone, and the cavities in them.
+//!
+//! 1. `Parts::of`: triangles joined to parts, their volumes, and which part lies in which
+//!    (`inside`).
+//! 2. [`keep_islands`] or [`fill_cavities`] decide which parts go.
+
+mod inside;
+mod label;
+
+use bonemesh_task::Task;
+
+use crate::{MeshError, TriangleMesh, TriangleTree};
+use label::{Labels, Part};
+
+/// Which islands [`keep_islands`] keeps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Islands {
+    /// The one with the largest volume.
+    Largest,
+    /// All of at least this volume (mm3), their cavities counted in.
+    AtLeastMm3(f64),
+}
+
+/// A part that is gone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RemovedPart {
+    /// The volume (mm3) that it enclosed; of an open part, a guess.
+    pub volume_mm3: f64,
+    /// How many triangles it had.
+    pub triangles: usize,
+    /// Whether it was the wall of a cavity; otherwise it was an island.
+    pub is_cavity: bool,
+}
+
+/// What [`keep_islands`] and [`fill_cavities`] give.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Kept {
+    /// The mesh that is left; triangles and vertices in the order they had.
+    pub mesh: TriangleMesh,
+    /// What is gone, the largest first.
+    pub removed: Vec<RemovedPart>,
+}
+
+/// Keeps the islands that are large enough, each with its cavities.
+///
+/// An island is a part that shares no vertex with the rest. A closed part that faces inward and lies in
+/// an outward one is a cavity of the innermost such part and stays or goes with it; what floats in a
+/// cavity is an island of its own. Which part lies in which is decided exactly, for parts that do
+/// not pass through one another. The volume of an open part is that between its triangles and the
+/// middle of its box: a guess.
+///
+/// The result is the same for any number of threads.
+///
+/// # Errors
+/// [`MeshError::Volume`] for a volume that is none, [`MeshError::Cancelled`].
+pub fn keep_islands(mesh: &TriangleMesh, keep: Islands, task: &Task) -> Result<Kept, MeshError> {
+    if let Islands::AtLeastMm3(least) = keep {
+        MeshError::volume(least)?;
+    }
+    let parts = Parts::of(mesh, task)?;
+    let is_kept: Vec<bool> = match keep {
+        Islands::AtLeastMm3(least) => {
+            let parts = parts.known.iter();
+            parts.map(|part| part.volume_mm3.abs() >= least).collect()
+        }
+        Islands::Largest => {
+            let islands = parts
+                .known
+                .iter()
+                .enumerate()
+                .filter(|(_, part)| !part.is_cavity);
+            // The first of equals.
+            let largest = islands
+                .rev()
+                .max_by(|(_, a), (_, b)| a.volume_mm3.abs().total_cmp(&b.volume_mm3.abs()));
+            let largest = largest.map(|(number, _)| number);
+            (0..parts.known.len()).map(|n| Some(n) == largest).collect()
+        }
+    };
+    let is_kept = parts
+        .known
+        .iter()
+        .enumerate()
+        .map(|(number, part)| match part.parent {
+            Some(parent) if part.is_cavity => is_kept[parent as usize],
+            _ => is_kept[number],
+        });
+    let is_kept: Vec<bool> = is_kept.collect();
+    parts.only(&is_kept)
+}
+
+/// Fills cavities: takes away closed parts that face inward inside an outward one, of at most
+/// `at_most_mm3` or all, with everything that floats in them.
+///
+/// The result is the same for any number of threads.
+///
+/// # Errors
+/// [`MeshError::Volume`] for a volume that is none, [`MeshError::Cancelled`].
+pub fn fill_cavities(
+    mesh: &TriangleMesh,
+    at_most_mm3: Option<f64>,
+    task: &Task,
+) -> Result<Kept, MeshError> {
+    let most = at_most_mm3.map_or(Ok(f64::INFINITY), MeshError::volume)?;
+    let parts = Parts::of(mesh, task)?;
+    let is_filled = |part: &Part| part.is_cavity && part.volume_mm3.abs() <= most;
+    let is_kept = parts.known.iter().map(|part| {
+        let mut at = Some(part);
+        // A parent encloses more than its child, so this ends.
+        while let Some(part) = at {
+            if is_filled(part) {
+                return false;
+            }
+            at = part.parent.map(|parent| &parts.known[parent as usize]);
+        }
+        true
+    });
+    let is_kept: Vec<bool> = is_kept.collect();
+    parts.only(&is_kept)
+}
+
+/// A mesh in parts.
+struct Parts<'a> {
+    mesh: &'a TriangleMesh,
+    /// The part of each triangle.
+    labels: Labels,
+    known: Vec<Part>,
+}
+
+impl<'a> Parts<'a> {
+    fn of(mesh: &'a TriangleMesh, task: &Task) -> Result<Self, MeshError> {
+        task.begin("parts", mesh.triangles().len());
+        let labels = Labels::of(mesh, task)?;
+        let mut parts = labels.parts(mesh, task)?;
+        if parts.len() > 1 {
+            let tree = TriangleTree::new(mesh, task)?;
+            inside::find_parents(&tree, &labels, &mut parts, task)?;
+        }
+        Ok(Self {
+            mesh,
+            labels,
+            known: parts,
+        })
+    }
+
+    /// The mesh of some parts, and what the others were.
+    fn only(&self, is_kept: &[bool]) -> Result<Kept, MeshError> {
+        let mut removed: Vec<RemovedPart> = self
+            .known
+            .iter()
+            .zip(is_kept)
+            .filter(|(_, is_kept)| !**is_kept)
+            .map(|(part, _)| RemovedPart {
+                volume_mm3: part.volume_mm3.abs(),
+                triangles: part.triangles,
+                is_cavity: part.is_cavity,
+            })
+            .collect();
+        if removed.is_empty() {
+            let mesh = self.mesh.clone();
+            return Ok(Kept { mesh, removed });
+        }
+        removed.sort_by(|a, b| b.volume_mm3.total_cmp(&a.volume_mm3));
+        let labelled = self.mesh.triangles().iter().zip(&self.labels.of_triangles);
+        let kept = labelled.filter(|(_, part)| is_kept[**part as usize]);
+        let triangles = kept.map(|(triangle, _)| *triangle).collect();
+        let mesh = TriangleMesh::new(self.mesh.vertices_mm().to_vec(), triangles)?.compacted();
+        Ok(Kept { mesh, removed })
+    }
+}

@@ -1,0 +1,79 @@
+"""What is done to finished meshes: islands, cavities, smoothing, fewer triangles."""
+
+import bonemesh
+import numpy as np
+import pytest
+
+
+@pytest.fixture(scope="module")
+def shell() -> bonemesh.Mesh:
+    """A sphere's shell: one island with one cavity."""
+    volume = bonemesh.phantom("sphere-shell", coarser=2.0)
+    return bonemesh.render(volume, method="isosurface")
+
+
+def is_printable(mesh: bonemesh.Mesh) -> bool:
+    return bonemesh.check(mesh)["printable"]
+
+
+def test_a_filled_shell_is_a_ball(shell: bonemesh.Mesh) -> None:
+    ball = bonemesh.fill_cavities(shell)
+    assert ball.report["removed_cavities"] == 1
+    assert bonemesh.check(ball)["topology"]["components"] == 1
+    assert len(bonemesh.fill_cavities(shell, cavities=0.0).triangles) == len(shell.triangles)
+
+
+def test_an_island_stays_with_its_cavity(shell: bonemesh.Mesh) -> None:
+    speck = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]) + 500
+    faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    vertices = np.vstack([shell.vertices, speck])
+    both = bonemesh.Mesh(vertices, np.vstack([shell.triangles, faces + len(shell.vertices)]))
+    for islands in ("largest", 1.0):
+        kept = bonemesh.keep_islands(both, islands=islands)
+        np.testing.assert_array_equal(kept.vertices, shell.vertices)
+        assert kept.report["removed_islands"] == 1
+    with pytest.raises(bonemesh.BonemeshError, match="ask for less"):
+        bonemesh.keep_islands(both, islands=1e12)
+
+
+def test_smoothing_moves_no_vertex_too_far(shell: bonemesh.Mesh) -> None:
+    smoothed = bonemesh.smooth(shell, tolerance_mm=0.1)
+    moves = np.linalg.norm(
+        smoothed.vertices.astype(float) - shell.vertices.astype(float), axis=1
+    )
+    assert 0 < moves.max() <= 0.1
+    assert smoothed.report["largest_move_mm"] == pytest.approx(moves.max())
+    assert is_printable(smoothed)
+
+
+def test_decimation_stops_at_the_number_or_the_error(shell: bonemesh.Mesh) -> None:
+    fewer = bonemesh.decimate(shell, triangles=1000)
+    assert len(fewer.triangles) == 1000
+    assert is_printable(fewer)
+    near = bonemesh.decimate(shell, error_mm=0.05)
+    assert len(near.triangles) < len(shell.triangles)
+    assert is_printable(near)
+    with pytest.raises(bonemesh.ArgumentError, match="at least one"):
+        bonemesh.decimate(shell)
+
+
+def test_render_does_the_same(shell: bonemesh.Mesh) -> None:
+    volume = bonemesh.phantom("sphere-shell", coarser=2.0)
+    made = bonemesh.render(
+        volume, method="isosurface", cavities="all", smooth_mm=0.1, triangles=2000
+    )
+    apart = bonemesh.decimate(
+        bonemesh.smooth(bonemesh.fill_cavities(shell), tolerance_mm=0.1), triangles=2000
+    )
+    np.testing.assert_array_equal(made.vertices, apart.vertices)
+    np.testing.assert_array_equal(made.triangles, apart.triangles)
+    assert made.report["after_care"]["removed_cavities"] == 1
+    assert shell.report["after_care"] is None
+
+
+@pytest.mark.parametrize("bad", ["biggest", -1.0, float("nan")])
+def test_what_is_no_volume_is_refused(shell: bonemesh.Mesh, bad: object) -> None:
+    with pytest.raises(bonemesh.BonemeshError):
+        bonemesh.keep_islands(shell, islands=bad)
+    with pytest.raises(bonemesh.BonemeshError):
+        bonemesh.fill_cavities(shell, cavities=bad)
