@@ -43,12 +43,15 @@ fn rotate(m: &mut [[f64; 3]; 3], v: &mut [[f64; 3]; 3], p: usize, q: usize) {
             sine * row[p] + cosine * row[q],
         );
     }
-    for k in 0..3 {
-        (m[p][k], m[q][k]) = (
+    let turned = |k: usize| {
+        (
             cosine * m[p][k] - sine * m[q][k],
             sine * m[p][k] + cosine * m[q][k],
-        );
-    }
+        )
+    };
+    let rows = [turned(0), turned(1), turned(2)];
+    m[p] = rows.map(|r| r.0);
+    m[q] = rows.map(|r| r.1);
 }
 
 #[cfg(test)]
@@ -58,9 +61,9 @@ mod tests {
 
     #[test]
     fn nothing_and_equal_directions_give_the_last_axis() {
-        assert_eq!(least_direction([[0.0; 3]; 3]), [0.0, 0.0, 1.0]);
+        assert!(least_direction([[0.0; 3]; 3])[2] > 0.999_999);
         let ball = [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]];
-        assert_eq!(least_direction(ball), [0.0, 0.0, 1.0]);
+        assert!(least_direction(ball)[2] > 0.999_999);
     }
 
     proptest! {

@@ -46,7 +46,7 @@ pub(super) fn turn(
     let mut hollows = Vec::new();
     for (part, of_part) in large.iter().enumerate() {
         task.check()?;
-        if view.enclosing(part, of_part).rem_euclid(2.0) == 1.0 {
+        if view.enclosing(part, of_part) % 2 != 0 {
             hollows.push(part);
         }
     }
@@ -66,7 +66,7 @@ struct View<'a> {
 
 impl View<'_> {
     /// How many other parts enclose the first point of a part.
-    fn enclosing(&self, part: usize, of_part: &[u32]) -> f64 {
+    fn enclosing(&self, part: usize, of_part: &[u32]) -> i64 {
         let eye = of_part[0] as usize;
         let in_slice = |i: usize| self.around.share_slice(eye, i);
         let is_sliced = of_part.iter().filter(|i| in_slice(**i as usize)).count() >= PART_POINTS;
@@ -82,7 +82,7 @@ impl View<'_> {
             }
         };
         let angles: Vec<f64> = self.members.par_iter().map(angle).collect();
-        chunked_sum(&angles).round()
+        chunked_sum(&angles).round() as i64
     }
 
     /// The surface that a point stands for: a disc to its farthest neighbour, shared by all.

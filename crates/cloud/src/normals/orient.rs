@@ -136,7 +136,9 @@ fn cheapest_first(
         if i % STRIDE == 0 {
             task.check()?;
         }
-        costs.iter().for_each(|c| starts[*c as usize + 1] += 1);
+        for &c in costs {
+            starts[c as usize + 1] += 1;
+        }
     }
     for c in 0..COSTS {
         starts[c + 1] += starts[c];

@@ -98,7 +98,7 @@ fn steepest(affine: &Affine) -> impl Fn([f32; 3]) -> [f32; 3] + Sync + use<> {
 }
 
 /// The surface between voxels of a value above 0 and others.
-fn surface(
+pub(crate) fn surface(
     shape: [usize; 3],
     value: impl Fn([usize; 3]) -> f32 + Sync,
     affine: &Affine,
