@@ -15,7 +15,8 @@ use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::histogram::{HistogramArguments, HuChoice};
-use crate::settings::{Method, Sampling, Settings};
+use super::surface::{AlphaChoice, StudyArguments};
+use crate::settings::{AlphaRule, Method, Sampling, Settings};
 
 /// Turns a folder of CT images into a mesh of the bone, and a selection on it into a region.
 #[derive(Debug, Parser)]
@@ -103,12 +104,16 @@ struct SamplingArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct SurfaceArguments {
-    /// How the surface is made.
+    /// How the surface is made: alpha, isosurface; for study: ball-pivoting, poisson, tetrahedra,
+    /// planar.
     #[arg(long, default_value = "alpha")]
     method: Method,
-    /// Largest circumradius kept in mm [default: mean distance to 100 neighbours].
-    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = length_mm)]
-    alpha: Option<f64>,
+    /// Largest circumradius kept in mm; or `auto`, with which the mesh has the volume of the bone's
+    /// voxels [default: mean distance to 100 neighbours].
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    alpha: Option<AlphaChoice>,
+    #[command(flatten)]
+    study: StudyArguments,
     /// Puts an isosurface where the grey equals the threshold, not at the true edges of the bone.
     #[arg(long)]
     at_threshold: bool,
@@ -344,12 +349,18 @@ impl SamplingArguments {
 impl SurfaceArguments {
     /// The settings of the surface step.
     pub(super) fn settings(&self) -> Settings {
-        Settings {
+        let (alpha_mm, alpha_rule) = match self.alpha {
+            Some(AlphaChoice::Auto) => (None, AlphaRule::BoneVolume),
+            Some(AlphaChoice::Given(alpha_mm)) => (Some(alpha_mm), AlphaRule::default()),
+            None => (None, AlphaRule::default()),
+        };
+        self.study.of(Settings {
             method: self.method,
-            alpha_mm: self.alpha,
+            alpha_mm,
+            alpha_rule,
             true_edges: !self.at_threshold,
             ..Settings::default()
-        }
+        })
     }
 }
 
@@ -376,7 +387,7 @@ fn thickness(text: &str) -> Result<ThicknessMm, String> {
     ThicknessMm::new(number(text)?).map_err(|e| e.to_string())
 }
 
-fn length_mm(text: &str) -> Result<f64, String> {
+pub(super) fn length_mm(text: &str) -> Result<f64, String> {
     let mm = number(text)?;
     if mm > 0.0 && mm.is_finite() {
         Ok(mm)

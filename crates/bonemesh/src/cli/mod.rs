@@ -8,6 +8,7 @@ mod commands;
 mod histogram;
 mod output;
 mod progress;
+mod surface;
 mod text;
 
 use std::ffi::OsString;
