@@ -25,6 +25,26 @@ METHODS = [
         "Isosurface",
         "Closed surface between voxels at the true edges of the bone, nearly whatever the threshold",
     ),
+    (
+        "ball-pivoting",
+        "Ball Pivoting",
+        "For study: a ball rolls from edge point to edge point; open where slices are far apart",
+    ),
+    (
+        "poisson",
+        "Poisson",
+        "For study: smooth closed surface that fits the edge points and their normals",
+    ),
+    (
+        "tetrahedra",
+        "Tetrahedra",
+        "For study: all Delaunay tetrahedra of the edge points, that is their convex hull",
+    ),
+    (
+        "planar",
+        "Planar",
+        "For study: triangles of the edge points seen along z, one sheet",
+    ),
 ]
 SAMPLERS = [
     ("uniform", "Uniform", "Points at even steps along each contour"),

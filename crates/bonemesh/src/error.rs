@@ -87,6 +87,11 @@ pub enum Error {
         "every point has its nearest neighbours in its own place, so there is no alpha; take repeated points out or set alpha"
     )]
     NoAlpha,
+    /// Alpha cannot be matched to the volume of voxels that are not there.
+    #[error(
+        "a cloud has no voxels whose volume alpha could be matched to; give alpha in mm, or render the images"
+    )]
+    NoVoxels,
     /// A picture that cannot be written.
     #[error("cannot write {path}: {source}; choose another place or name, such as histogram.png")]
     Picture {

@@ -36,6 +36,7 @@ mod check;
 pub mod cli;
 mod error;
 mod memory;
+mod of_cloud;
 mod panics;
 mod picture;
 mod region;
@@ -53,7 +54,7 @@ pub use picture::{check_picture_target, write_histogram};
 pub use region::{RegionRequest, RegionResult, select_roi};
 pub use render::{Rendered, mesh_cloud, point_cloud, render, render_volume};
 pub use report::{CheckReport, RegionReport, RenderReport, Seconds};
-pub use settings::{Method, Sampling, Settings};
+pub use settings::{AlphaRule, Method, Sampling, Settings};
 pub use source::{Contents, Reading, Source};
 pub use thresholds::{
     ChosenThreshold, HistogramReport, HistogramRequest, SuggestionReport, choose_threshold,
@@ -61,7 +62,8 @@ pub use thresholds::{
 };
 
 pub use bonemesh_cloud::{
-    CloudError, Frame, Percent, PointCloud, Sampler, mean_neighbour_distance, sample,
+    CloudError, Frame, NormalSettings, Percent, PointCloud, Sampler, estimate_normals,
+    mean_neighbour_distance, sample,
 };
 pub use bonemesh_delaunay::{DelaunayError, Points, Tetrahedra, tetrahedralize};
 pub use bonemesh_dicom::{DicomError, Gap, LeftOut, SeriesChoice, SeriesReport};
@@ -81,7 +83,10 @@ pub use bonemesh_segment::{
     detect_edges, edge_threshold, grow_region, hysteresis_threshold, largest_component,
     local_threshold, multi_otsu, otsu, suggest_thresholds, threshold,
 };
-pub use bonemesh_surface::{SurfaceError, alpha_surface};
+pub use bonemesh_surface::{
+    BallPivoted, BallPivotingSettings, PoissonSettings, SurfaceError, VolumeMatched, alpha_surface,
+    ball_pivoting, planar_surface, poisson, tetrahedra_surface, volume_matched_boundary,
+};
 pub use bonemesh_task::{Cancel, Cancelled, Progress, Task, pool};
 pub use bonemesh_volume::{
     Affine, CropBox, CropError, Geometry, Histogram, Volume, VolumeError, Voxels,

@@ -4,21 +4,19 @@ use std::borrow::Cow;
 use std::path::Path;
 use std::time::Instant;
 
-use bonemesh_cloud::{Frame, PointCloud, extract_points, mean_neighbour_distance, sample};
+use bonemesh_cloud::{Frame, PointCloud, extract_points, sample};
 use bonemesh_mesh::TriangleMesh;
-use bonemesh_segment::{detect_edges, threshold};
-use bonemesh_surface::{IsosurfaceSettings, alpha_boundary, boundary_surface, isosurface};
+use bonemesh_segment::{Mask, detect_edges, threshold};
+use bonemesh_surface::{IsosurfaceSettings, isosurface};
 use bonemesh_task::{Task, pool};
 use bonemesh_volume::Volume;
 
 use crate::after_care::cared_for;
+use crate::of_cloud::cloud_to_mesh;
 use crate::report::{RenderReport, Seconds, check};
 use crate::source::{Reading, Source};
 use crate::thresholds::chosen;
-use crate::{Error, Method, Sampling, Settings};
-
-/// Neighbours (with the point itself) whose mean distance is the published choice of alpha.
-const ALPHA_NEIGHBOURS: usize = 100;
+use crate::{AlphaRule, Error, Method, Sampling, Settings};
 
 /// Fewer points enclose no space.
 const MIN_POINTS: usize = 4;
@@ -45,7 +43,7 @@ pub fn render(path: &Path, settings: &Settings, task: &Task) -> Result<Rendered,
         let mut rendered = volume_to_mesh(&volume, settings, task)?;
         let report = &mut rendered.report;
         report.series_uid = Some(series.uid);
-        report.warnings = series.warnings;
+        report.warnings.splice(..0, series.warnings);
         report.seconds.read = read_s;
         report.seconds.total += read_s;
         Ok(rendered)
@@ -75,7 +73,8 @@ pub fn point_cloud(
 ) -> Result<PointCloud, Error> {
     pool(settings.threads)?.install(|| {
         let settings = &chosen(volume, settings, task)?.of(settings);
-        volume_to_cloud(volume, settings, frame, &mut Seconds::default(), task)
+        let found = volume_to_cloud(volume, settings, frame, &mut Seconds::default(), task)?;
+        Ok(found.0)
     })
 }
 
@@ -84,14 +83,14 @@ pub fn point_cloud(
 /// # Errors
 /// [`Error::Cloud`], [`Error::Surface`], [`Error::NotForMethod`] where voxels are needed.
 pub fn mesh_cloud(cloud: &PointCloud, settings: &Settings, task: &Task) -> Result<Rendered, Error> {
-    if settings.method != Method::Alpha {
+    if settings.method == Method::Isosurface {
         return Err(Error::NotForMethod {
             choice: "a cloud",
             method: settings.method.name(),
         });
     }
     pool(settings.threads)?.install(|| {
-        let rendered = cloud_to_mesh(cloud, settings, Seconds::default(), task)?;
+        let rendered = cloud_to_mesh(cloud, None, settings, Seconds::default(), task)?;
         cared_for(rendered, &settings.after_care, task)
     })
 }
@@ -102,16 +101,14 @@ fn volume_to_mesh(volume: &Volume, settings: &Settings, task: &Task) -> Result<R
     let chosen = chosen(volume, settings, task)?;
     let settings = &chosen.of(settings);
     let threshold_s = lap(&mut clock);
-    let mut rendered = match settings.method {
-        Method::Alpha => {
-            let cloud = volume_to_cloud(volume, settings, Frame::Patient, &mut seconds, task)?;
-            seconds.edges += threshold_s;
-            cloud_to_mesh(&cloud, settings, seconds, task)?
-        }
-        Method::Isosurface => {
-            seconds.edges += threshold_s;
-            volume_to_isosurface(volume, settings, seconds, task)?
-        }
+    let mut rendered = if settings.method == Method::Isosurface {
+        seconds.edges += threshold_s;
+        volume_to_isosurface(volume, settings, seconds, task)?
+    } else {
+        let (cloud, bone_mm3) =
+            volume_to_cloud(volume, settings, Frame::Patient, &mut seconds, task)?;
+        seconds.edges += threshold_s;
+        cloud_to_mesh(&cloud, Some(bone_mm3), settings, seconds, task)?
     };
     rendered = cared_for(rendered, &settings.after_care, task)?;
     rendered.report.spacing_mm = Some(volume.geometry().spacing_mm());
@@ -133,7 +130,7 @@ fn volume_to_isosurface(
     if settings.sampling.is_some() {
         return Err(refuse("a sample of the points"));
     }
-    if settings.alpha_mm.is_some() {
+    if settings.alpha_mm.is_some() || settings.alpha_rule != AlphaRule::MeanDistance {
         return Err(refuse("alpha"));
     }
     let mut clock = Instant::now();
@@ -157,13 +154,14 @@ fn volume_to_isosurface(
     Ok(Rendered { mesh, report })
 }
 
+/// The cloud, and the volume (mm3) of all voxels of the bone.
 fn volume_to_cloud(
     volume: &Volume,
     settings: &Settings,
     frame: Frame,
     seconds: &mut Seconds,
     task: &Task,
-) -> Result<PointCloud, Error> {
+) -> Result<(PointCloud, f64), Error> {
     let mut clock = Instant::now();
     let cropped = settings
         .crop
@@ -179,6 +177,7 @@ fn volume_to_cloud(
     let mask = threshold(&volume, settings.threshold, task)?;
     drop(volume);
     drop(cropped);
+    let bone_mm3 = bone_mm3(&mask);
     let edges = detect_edges(&mask, settings.canny, task)?;
     drop(mask);
     seconds.edges = lap(&mut clock);
@@ -195,41 +194,14 @@ fn volume_to_cloud(
         None => cloud,
     };
     seconds.cloud = lap(&mut clock);
-    Ok(cloud)
+    Ok((cloud, bone_mm3))
 }
 
-fn cloud_to_mesh(
-    cloud: &PointCloud,
-    settings: &Settings,
-    mut seconds: Seconds,
-    task: &Task,
-) -> Result<Rendered, Error> {
-    let mut clock = Instant::now();
-    let alpha_mm = match settings.alpha_mm {
-        Some(alpha_mm) => alpha_mm,
-        None => mean_neighbour_distance(cloud, ALPHA_NEIGHBOURS, true, task)?,
-    };
-    if settings.alpha_mm.is_none() && alpha_mm <= 0.0 {
-        return Err(Error::NoAlpha);
-    }
-    seconds.neighbours = lap(&mut clock);
-    let boundary = alpha_boundary(cloud, alpha_mm, task)?;
-    seconds.tetrahedra = lap(&mut clock);
-    let surface = boundary_surface(cloud, boundary, task)?;
-    let topology = check(&surface.mesh, task)?;
-    seconds.surface = lap(&mut clock);
-    seconds.total =
-        seconds.edges + seconds.cloud + seconds.neighbours + seconds.tetrahedra + seconds.surface;
-    let mut report = RenderReport::new(settings, &topology, seconds);
-    report.points = Some(cloud.len());
-    report.alpha_mm = Some(alpha_mm);
-    report.tetrahedra = Some(surface.tetrahedra);
-    // Summed exactly on the lattice.
-    report.volume_mm3 = surface.volume_mm3;
-    Ok(Rendered {
-        mesh: surface.mesh,
-        report,
-    })
+/// The volume of all voxels of the bone.
+fn bone_mm3(mask: &Mask) -> f64 {
+    let voxels = mask.voxels.iter().filter(|is_bone| **is_bone).count();
+    let voxel_mm3 = mask.geometry.patient_from_voxel().determinant().abs();
+    voxels as f64 * voxel_mm3
 }
 
 fn sampled(cloud: &PointCloud, sampling: Sampling, task: &Task) -> Result<PointCloud, Error> {
@@ -251,7 +223,7 @@ fn sampled(cloud: &PointCloud, sampling: Sampling, task: &Task) -> Result<PointC
 }
 
 /// Seconds since `clock`, which starts anew.
-fn lap(clock: &mut Instant) -> f64 {
+pub(crate) fn lap(clock: &mut Instant) -> f64 {
     let seconds = clock.elapsed().as_secs_f64();
     *clock = Instant::now();
     seconds

@@ -51,7 +51,13 @@ pub struct RenderReport {
     pub points: Option<usize>,
     /// Largest circumradius kept, by the method with alpha.
     pub alpha_mm: Option<f64>,
-    /// Tetrahedra kept, by the method with alpha.
+    /// Alpha over the mean distance to 100 neighbours, where it was matched to the bone's volume.
+    pub alpha_coefficient: Option<f64>,
+    /// Volume of all voxels of the bone, where alpha was matched to it.
+    pub bone_volume_mm3: Option<f64>,
+    /// Radii of the balls, by ball pivoting.
+    pub radii_mm: Option<Vec<f64>>,
+    /// Tetrahedra kept, by the methods that make them.
     pub tetrahedra: Option<usize>,
     /// Vertices of the mesh.
     pub vertices: usize,
@@ -87,6 +93,9 @@ impl RenderReport {
             spacing_mm: None,
             points: None,
             alpha_mm: None,
+            alpha_coefficient: None,
+            bone_volume_mm3: None,
+            radii_mm: None,
             tetrahedra: None,
             vertices: check.vertices,
             triangles: check.triangles,

@@ -6,6 +6,7 @@ use std::str::FromStr;
 use bonemesh_cloud::{Percent, Sampler};
 use bonemesh_dicom::SeriesChoice;
 use bonemesh_segment::{CannySettings, HuThreshold};
+use bonemesh_surface::PoissonSettings;
 use bonemesh_volume::CropBox;
 
 use crate::AfterCare;
@@ -19,17 +20,36 @@ pub enum Method {
     Alpha,
     /// The surface between voxels, at the true edges of the bone.
     Isosurface,
+    /// For study: a ball rolls over the edge points.
+    BallPivoting,
+    /// For study: screened Poisson of the edge points and their normals.
+    Poisson,
+    /// For study: all Delaunay tetrahedra of the edge points, that is their convex hull.
+    Tetrahedra,
+    /// For study: plane Delaunay triangles of the edge points seen along z.
+    Planar,
 }
 
 impl Method {
     /// Every method, in the order in which they are offered.
-    pub const ALL: [Self; 2] = [Self::Alpha, Self::Isosurface];
+    pub const ALL: [Self; 6] = [
+        Self::Alpha,
+        Self::Isosurface,
+        Self::BallPivoting,
+        Self::Poisson,
+        Self::Tetrahedra,
+        Self::Planar,
+    ];
 
     /// The name used on the command line, in Python and in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Alpha => "alpha",
             Self::Isosurface => "isosurface",
+            Self::BallPivoting => "ball-pivoting",
+            Self::Poisson => "poisson",
+            Self::Tetrahedra => "tetrahedra",
+            Self::Planar => "planar",
         }
     }
 }
@@ -46,6 +66,17 @@ impl FromStr for Method {
                 format!("there is no method `{name}`; choose one of: {names}")
             })
     }
+}
+
+/// How alpha is chosen where none is given.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum AlphaRule {
+    /// The mean distance to 100 neighbours, as published.
+    #[default]
+    MeanDistance,
+    /// The alpha with which the tetrahedra have the volume of the bone's voxels.
+    BoneVolume,
 }
 
 /// Which part of the points is kept, and how they are chosen.
@@ -71,8 +102,17 @@ pub struct Settings {
     pub canny: CannySettings,
     /// How the surface is made.
     pub method: Method,
-    /// Largest circumradius kept, in mm; `None` takes the mean distance to 100 neighbours.
+    /// Largest circumradius kept, in mm; `None` has it chosen by `alpha_rule`.
     pub alpha_mm: Option<f64>,
+    /// How alpha is chosen where `alpha_mm` is `None`.
+    pub alpha_rule: AlphaRule,
+    /// Radii of the balls of ball pivoting, in mm; `None` takes three and six times the mean
+    /// distance to the nearest neighbour.
+    pub radii_mm: Option<Vec<f64>>,
+    /// Poisson's cube has 2 to the power of this many cells a side.
+    pub depth: u32,
+    /// Poisson's cube is so many times as large as the points.
+    pub scale: f64,
     /// Places an isosurface at the true edges of the bone; otherwise where the grey equals the
     /// threshold.
     pub true_edges: bool,
@@ -101,6 +141,10 @@ impl Default for Settings {
             canny: CannySettings::default(),
             method: Method::default(),
             alpha_mm: None,
+            alpha_rule: AlphaRule::default(),
+            radii_mm: None,
+            depth: PoissonSettings::default().depth,
+            scale: PoissonSettings::default().scale,
             true_edges: true,
             crop: None,
             series: None,

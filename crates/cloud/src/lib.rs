@@ -3,7 +3,8 @@
 //! [`extract_points`] makes one point of every edge pixel, in the patient frame or in the
 //! published method's image frame, ordered by slice, row and column. Such a cloud keeps its
 //! integer [`Lattice`], on which later steps can decide ties exactly.
-//! [`mean_neighbour_distance`] is the published choice of alpha, [`sample`] thins a cloud, and
+//! [`mean_neighbour_distance`] is the published choice of alpha, [`sample`] thins a cloud,
+//! [`estimate_normals`] tells which way is out at each point, and
 //! [`read_cloud`] and [`write_cloud`] exchange it with other programs. Results are the same for
 //! any number of threads.
 //!
@@ -39,6 +40,7 @@
 mod extract;
 mod io;
 mod neighbours;
+mod normals;
 mod point_cloud;
 mod recognise;
 mod sampling;
@@ -50,6 +52,7 @@ use bonemesh_task::Cancelled;
 pub use extract::extract_points;
 pub use io::{CloudFormat, check_target, read_cloud, write_cloud};
 pub use neighbours::mean_neighbour_distance;
+pub use normals::{NormalSettings, estimate_normals};
 pub use point_cloud::{Frame, Lattice, PointCloud};
 pub use sampling::{Percent, Sampler, sample};
 
@@ -70,12 +73,15 @@ pub enum CloudError {
     TooMany(usize),
     /// A cloud with too few points for neighbours.
     #[error(
-        "a cloud of {0} point(s) has no neighbour distances; choose a threshold or crop box that leaves more edges"
+        "a cloud of {0} point(s) has no neighbour distances or normals; choose a threshold or crop box that leaves more edges"
     )]
     TooFew(usize),
     /// A number of neighbours that leaves no distance.
     #[error("{0} neighbours (the point itself counts as one) leave no distance; ask for 2 or more")]
     NeighbourCount(usize),
+    /// A radius that reaches nothing.
+    #[error("{0} mm is no radius in which to look for neighbours; give a length above 0")]
+    Radius(f64),
     /// A percentage that cannot be used.
     #[error("{0} is no percentage to keep; choose a number above 0 and up to 100")]
     Percent(f64),

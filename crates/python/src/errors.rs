@@ -150,7 +150,13 @@ pub(crate) fn raised(py: Python<'_>, error: &Error) -> PyErr {
 fn is_argument(error: &Error) -> bool {
     use DelaunayError as D;
     match error {
-        Error::Volume(_) | Error::Surface(SurfaceError::Alpha(_)) => true,
+        Error::Volume(_)
+        | Error::Surface(
+            SurfaceError::Alpha(_)
+            | SurfaceError::Radii(_)
+            | SurfaceError::Depth(_)
+            | SurfaceError::Scale(_),
+        ) => true,
         Error::Segment(e) => matches!(
             e,
             SegmentError::Threshold(_)

@@ -174,6 +174,49 @@ impl FromPyObject<'_, '_> for Threshold {
     }
 }
 
+/// Alpha: a length in mm, or "auto".
+#[derive(Clone, Copy)]
+pub(crate) enum Alpha {
+    Auto,
+    Given(f64),
+}
+
+impl Alpha {
+    /// The length, where one is given.
+    pub(crate) fn mm(self) -> Option<f64> {
+        match self {
+            Self::Auto => None,
+            Self::Given(alpha_mm) => Some(alpha_mm),
+        }
+    }
+}
+
+impl FromPyObject<'_, '_> for Alpha {
+    type Error = PyErr;
+
+    fn extract(value: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+        if !value.is_instance_of::<PyString>() {
+            return Ok(Self::Given(value.extract()?));
+        }
+        match value.extract::<String>()?.as_str() {
+            "auto" => Ok(Self::Auto),
+            other => {
+                let remedy = "give a length in mm, \"auto\", or None for the mean distance";
+                let message = format!("alpha_mm is {other:?}; {remedy}");
+                Err(errors::argument(value.py(), &message))
+            }
+        }
+    }
+}
+
+/// Poisson's depth; the library says which are possible.
+pub(crate) fn depth(py: Python<'_>, depth: i128) -> PyResult<u32> {
+    u32::try_from(depth).map_err(|_| {
+        let message = format!("depth is {depth}; give a whole number from 3 to 8");
+        errors::argument(py, &message)
+    })
+}
+
 /// Canny's parameters; its thresholds are the usual ones where none are given.
 pub(crate) fn canny(
     py: Python<'_>,

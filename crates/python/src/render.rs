@@ -4,7 +4,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use bonemesh::{
-    AfterCare, Decimation, Error, Method, Percent, Rendered, Sampler, Sampling, Settings, Task,
+    AfterCare, AlphaRule, Decimation, Error, Method, Percent, Rendered, Sampler, Sampling,
+    Settings, Task,
 };
 use pyo3::prelude::*;
 
@@ -13,7 +14,7 @@ use crate::cancel::Cancel;
 use crate::detach::{Watch, detached};
 use crate::errors;
 use crate::mesh::Mesh;
-use crate::options::{self, Choice, Crop, Threads, Threshold};
+use crate::options::{self, Alpha, Choice, Crop, Threads, Threshold};
 use crate::volume::Volume;
 
 /// What is rendered.
@@ -34,13 +35,18 @@ pub(crate) fn methods() -> Vec<&'static str> {
 ///   "auto" finds it in the volume, a name ("skull", "cortical", "thin-bone", "teeth") takes it
 ///   from the literature; `report["threshold_reason"]` says how.
 /// - `method`: "alpha", the boundary of the Delaunay tetrahedra of edge points with a circumradius
-///   up to alpha, or "isosurface", the closed surface between voxels.
+///   up to alpha, or "isosurface", the closed surface between voxels. For study, with limits that
+///   the library's docs name: "ball-pivoting", "poisson", "tetrahedra" (their convex hull), "planar".
 /// - `sigma`: Canny's smoothing in pixels.
 /// - `series`: UID or number (1 is the largest) where a folder holds several.
 /// - `one_series`: all slices that fit together are one series, whatever UIDs they name.
 /// - `crop`: "I0:I1,J0:J1,K0:K1" or three pairs: columns, rows, slices, from 0, ends not included.
 /// - `sample_percent`, `sampler`, `seed`: use only a part of the points; None uses all.
-/// - `alpha_mm`: largest circumradius; None takes the mean distance to 100 neighbours.
+/// - `alpha_mm`: largest circumradius; None takes the mean distance to 100 neighbours, "auto" the one
+///   with which the mesh has the volume of the bone's voxels (`report["alpha_coefficient"]`).
+/// - `radii_mm`: of ball pivoting; None takes 3 and 6 times the mean distance to the nearest point.
+/// - `depth`, `scale`: Poisson's cube has 2**depth cells a side (3 to 8) and is `scale` times as
+///   large as the points.
 /// - `true_edges`: an isosurface lies at the true edges of the bone, else where the grey equals the
 ///   threshold.
 /// - `islands`: "largest", or the least volume (mm3) of the islands kept; None keeps all.
@@ -56,7 +62,7 @@ pub(crate) fn methods() -> Vec<&'static str> {
 #[pyfunction]
 #[pyo3(signature = (
     path_or_volume, *, threshold_hu=Threshold::skull(), method="alpha", sigma=1.0, series=None,
-    one_series=false, crop=None, sample_percent=None, sampler="uniform", seed=0, alpha_mm=None, true_edges=true, islands=None,
+    one_series=false, crop=None, sample_percent=None, sampler="uniform", seed=0, alpha_mm=None, radii_mm=None, depth=8, scale=1.1, true_edges=true, islands=None,
     cavities=None, smooth_mm=None, triangles=None, decimate_mm=None, threads=None, progress=None,
     cancel=None
 ))]
@@ -73,7 +79,10 @@ pub(crate) fn render(
     sample_percent: Option<f64>,
     sampler: &str,
     seed: i128,
-    alpha_mm: Option<f64>,
+    alpha_mm: Option<Alpha>,
+    radii_mm: Option<Vec<f64>>,
+    depth: i128,
+    scale: f64,
     true_edges: bool,
     islands: Option<Kept>,
     cavities: Option<Filled>,
@@ -90,7 +99,14 @@ pub(crate) fn render(
         method: method
             .parse::<Method>()
             .map_err(|e| errors::unusable(py, e))?,
-        alpha_mm,
+        alpha_mm: alpha_mm.and_then(Alpha::mm),
+        alpha_rule: match alpha_mm {
+            Some(Alpha::Auto) => AlphaRule::BoneVolume,
+            _ => AlphaRule::default(),
+        },
+        radii_mm,
+        depth: options::depth(py, depth)?,
+        scale,
         true_edges,
         crop: crop.map(|c| c.0),
         series: series.map(|s| s.0),

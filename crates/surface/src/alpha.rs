@@ -99,7 +99,7 @@ pub fn boundary_surface(
 }
 
 /// The cloud as its lattice, where it has one, or as free points.
-fn points(cloud: &PointCloud) -> Points<'_> {
+pub(crate) fn points(cloud: &PointCloud) -> Points<'_> {
     match cloud.lattice() {
         Some(lattice) => Points::Lattice {
             coordinates: &lattice.coordinates,

@@ -7,7 +7,24 @@
 //! - [`alpha_surface`] is the published method, for point clouds. Limits: its surface is closed,
 //!   but may touch itself in edges and vertices, where a check reports it as not manifold; and
 //!   alpha is one length for the whole cloud, so thin gaps close where it is large and holes open
-//!   where it is small.
+//!   where it is small. [`volume_matched_boundary`] finds the alpha with which the tetrahedra have
+//!   the volume of the bone's voxels; a solid body's may not be had.
+//!
+//! The other methods that the published study tried are here for study, not for use:
+//!
+//! - [`ball_pivoting`]: a ball rolls from point to point. Limits: borders wherever points lie further
+//!   apart than a ball is wide, so slices 5 mm apart hardly join; gaps narrower than a ball are
+//!   bridged; only edges are sure to be manifold.
+//! - [`poisson`]: screened Poisson, a smooth function that fits the normals. Limits: a regular grid of
+//!   at most 256 cells a side, not an octree; closed at any price, so it invents what it does not
+//!   see; one slice becomes a sheet through the middle.
+//! - [`tetrahedra_surface`]: the tetrahedra without alpha, whose boundary is the convex hull. Limits:
+//!   bores, orbits and dents are filled.
+//! - [`planar_surface`]: plane Delaunay triangles seen along z. Limits: one sheet, never a body.
+//!
+//! Ball pivoting and Poisson need normals (`bonemesh_cloud::estimate_normals`), and share their
+//! limits: of one slice alone, or slices further apart than the neighbourhood reaches, these stand
+//! across the slice.
 //!
 //! ```
 //! use bonemesh_cloud::PointCloud;
@@ -41,13 +58,27 @@
 //! *Three-dimensional alpha shapes*, 1994.
 
 mod alpha;
+mod ball_pivoting;
 mod isosurface;
+mod planar;
+mod poisson;
+#[cfg(test)]
+mod synthetic;
+mod tetrahedra;
+mod vector;
+mod volume_matched;
 
 pub use alpha::{AlphaSurface, alpha_boundary, alpha_surface, boundary_surface};
+pub use ball_pivoting::{BallPivoted, BallPivotingSettings, ball_pivoting};
+use bonemesh_cloud::CloudError;
 use bonemesh_delaunay::DelaunayError;
 use bonemesh_mesh::MeshError;
 use bonemesh_task::Cancelled;
 pub use isosurface::{IsosurfaceSettings, isosurface};
+pub use planar::planar_surface;
+pub use poisson::{PoissonSettings, poisson};
+pub use tetrahedra::tetrahedra_surface;
+pub use volume_matched::{VolumeMatched, volume_matched_boundary};
 
 /// Why no surface could be made, and the remedy.
 #[non_exhaustive]
@@ -79,9 +110,65 @@ pub enum SurfaceError {
     /// More vertices than an index can name.
     #[error("the surface has more than 4 billion vertices; crop the volume")]
     TooLarge,
+    /// The cloud has no normals or distances.
+    #[error(transparent)]
+    Cloud(CloudError),
+    /// Radii that are no lengths.
+    #[error("{0:?} are no radii for ball pivoting; give one length above 0 (mm) or more")]
+    Radii(Vec<f64>),
+    /// Points of one place have no distance from which radii or cells could follow.
+    #[error(
+        "the points all share one place, or lie too far out to be told apart; give points that differ, in mm"
+    )]
+    NoDistance,
+    /// No ball touches three points from outside.
+    #[error(
+        "no ball of up to {radius_mm} mm touches three points from outside; give larger radii, or points of several slices"
+    )]
+    NothingPivoted {
+        /// The largest radius.
+        radius_mm: f64,
+    },
+    /// A volume that tetrahedra cannot have.
+    #[error("{0} mm3 is no volume to match alpha to; give one above 0")]
+    Volume(f64),
+    /// A depth that is not offered.
+    #[error("a depth of {0} is not possible; give 3 to 8 (8: 256 cells a side, some 700 MB)")]
+    Depth(u32),
+    /// A scale that leaves points out, or no room for them.
+    #[error("a scale of {0} is not possible; give 1 to 10 (1.1 leaves a tenth of the cube free)")]
+    Scale(f64),
+    /// The function is level.
+    #[error("the points and their normals enclose nothing; give points of several slices")]
+    NothingEnclosed,
+    /// Nothing to triangulate in the plane.
+    #[error(
+        "seen along z the {points} points lie on one line or in fewer than three places; give points side by side, or choose another method"
+    )]
+    Upright {
+        /// Points given.
+        points: usize,
+    },
+    /// A coordinate outside the range in which the plane's predicates are exact.
+    #[error(
+        "the point {place:?} mm is too far out or too near the origin for exact triangles; coordinates must be 0 or between 1e-42 and 1e60 in size"
+    )]
+    Coordinate {
+        /// The point in mm.
+        place: [f64; 3],
+    },
     /// Stopped on request.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+impl From<CloudError> for SurfaceError {
+    fn from(error: CloudError) -> Self {
+        match error {
+            CloudError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            error => Self::Cloud(error),
+        }
+    }
 }
 
 impl From<DelaunayError> for SurfaceError {

@@ -16,7 +16,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::after_care::{AfterCareArguments, Repair};
 use super::histogram::{HistogramArguments, HuChoice};
-use crate::settings::{Method, Sampling, Settings};
+use super::surface::{AlphaChoice, StudyArguments};
+use crate::settings::{AlphaRule, Method, Sampling, Settings};
 
 /// Turns a folder of CT images into a mesh of the bone, and a selection on it into a region.
 #[derive(Debug, Parser)]
@@ -106,12 +107,16 @@ struct SamplingArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct SurfaceArguments {
-    /// How the surface is made.
+    /// How the surface is made: alpha, isosurface; for study: ball-pivoting, poisson, tetrahedra,
+    /// planar.
     #[arg(long, default_value = "alpha")]
     method: Method,
-    /// Largest circumradius kept in mm [default: mean distance to 100 neighbours].
-    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = length_mm)]
-    alpha: Option<f64>,
+    /// Largest circumradius kept in mm; or `auto`, with which the mesh has the volume of the bone's
+    /// voxels [default: mean distance to 100 neighbours].
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    alpha: Option<AlphaChoice>,
+    #[command(flatten)]
+    study: StudyArguments,
     /// Puts an isosurface where the grey equals the threshold, not at the true edges of the bone.
     #[arg(long)]
     at_threshold: bool,
@@ -371,13 +376,19 @@ impl SamplingArguments {
 impl SurfaceArguments {
     /// The settings of the surface step.
     pub(super) fn settings(&self) -> Settings {
-        Settings {
+        let (alpha_mm, alpha_rule) = match self.alpha {
+            Some(AlphaChoice::Auto) => (None, AlphaRule::BoneVolume),
+            Some(AlphaChoice::Given(alpha_mm)) => (Some(alpha_mm), AlphaRule::default()),
+            None => (None, AlphaRule::default()),
+        };
+        self.study.of(Settings {
             method: self.method,
-            alpha_mm: self.alpha,
+            alpha_mm,
+            alpha_rule,
             true_edges: !self.at_threshold,
             after_care: self.after_care.settings(),
             ..Settings::default()
-        }
+        })
     }
 }
 

@@ -9,6 +9,7 @@ mod commands;
 mod histogram;
 mod output;
 mod progress;
+mod surface;
 mod text;
 
 use std::ffi::OsString;

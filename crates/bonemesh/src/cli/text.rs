@@ -73,6 +73,13 @@ pub(super) fn rendered(report: &RenderReport, file: &Path) -> String {
             "  {points} points, alpha {alpha_mm:.3} mm, {tetrahedra} tetrahedra"
         ));
     }
+    if let (Some(coefficient), Some(bone_mm3)) = (report.alpha_coefficient, report.bone_volume_mm3)
+    {
+        line(format!(
+            "  alpha is {coefficient:.3} times the mean distance, for the bone's {:.2} cm3",
+            bone_mm3 / MM3_PER_CM3
+        ));
+    }
     line(format!("  {}", verdict(report.watertight, report.manifold)));
     if let Some(report) = &report.after_care {
         text.push_str(&after_care(report));

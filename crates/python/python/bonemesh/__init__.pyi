@@ -356,7 +356,9 @@ def render(
     path_or_volume: _Path | Volume,
     *,
     threshold_hu: float | _Threshold = ...,
-    method: Literal["alpha", "isosurface"] = "alpha",
+    method: Literal[
+        "alpha", "isosurface", "ball-pivoting", "poisson", "tetrahedra", "planar"
+    ] = "alpha",
     sigma: float = 1.0,
     series: SupportsIndex | str | None = None,
     one_series: bool = False,
@@ -364,7 +366,10 @@ def render(
     sample_percent: float | None = None,
     sampler: _Sampler = "uniform",
     seed: SupportsIndex = 0,
-    alpha_mm: float | None = None,
+    alpha_mm: float | Literal["auto"] | None = None,
+    radii_mm: Sequence[float] | None = None,
+    depth: int = 8,
+    scale: float = 1.1,
     true_edges: bool = True,
     islands: Literal["largest"] | float | None = None,
     cavities: Literal["all"] | float | None = None,

@@ -35,7 +35,7 @@ pub(super) fn border(node: [usize; 3], axis: usize) -> [f32; 3] {
 /// The part of the step from a value `a` to one `b` of the other sign after which a line between
 /// them passes 0.
 #[inline]
-pub(super) fn linear(a: f32, b: f32) -> f32 {
+pub(crate) fn linear(a: f32, b: f32) -> f32 {
     a / (a - b)
 }
 

@@ -11,7 +11,7 @@
 
 mod blur;
 mod cases;
-mod cut;
+pub(crate) mod cut;
 mod edge;
 mod grey;
 mod layer;
@@ -117,7 +117,7 @@ fn steepest(affine: &Affine) -> impl Fn([f32; 3]) -> [f32; 3] + Sync + use<> {
 
 /// The surface between voxels of a value above 0 and others, if there are any; `crossing` tells
 /// where between two values it is.
-fn surface(
+pub(crate) fn surface(
     shape: [usize; 3],
     value: impl Fn([usize; 3]) -> f32 + Sync,
     crossing: impl Fn(f32, f32) -> f32 + Sync,
