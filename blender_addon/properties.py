@@ -25,6 +25,11 @@ METHODS = [
         "Isosurface",
         "Closed surface between voxels at the true edges of the bone, nearly whatever the threshold",
     ),
+    (
+        "labelled",
+        "Labelled Tetrahedra",
+        "Closed surface of Delaunay tetrahedra, each bone or not by what lies in it; without stairs on thick slices",
+    ),
 ]
 SAMPLERS = [
     ("uniform", "Uniform", "Points at even steps along each contour"),

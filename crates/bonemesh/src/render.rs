@@ -7,7 +7,9 @@ use std::time::Instant;
 use bonemesh_cloud::{Frame, PointCloud, extract_points, mean_neighbour_distance, sample};
 use bonemesh_mesh::TriangleMesh;
 use bonemesh_segment::{detect_edges, threshold};
-use bonemesh_surface::{IsosurfaceSettings, alpha_boundary, boundary_surface, isosurface};
+use bonemesh_surface::{
+    IsosurfaceSettings, alpha_boundary, boundary_surface, isosurface, labelled_surface,
+};
 use bonemesh_task::{Task, pool};
 use bonemesh_volume::Volume;
 
@@ -104,9 +106,9 @@ fn volume_to_mesh(volume: &Volume, settings: &Settings, task: &Task) -> Result<R
             seconds.edges += threshold_s;
             cloud_to_mesh(&cloud, settings, seconds, task)?
         }
-        Method::Isosurface => {
+        Method::Isosurface | Method::Labelled => {
             seconds.edges += threshold_s;
-            volume_to_isosurface(volume, settings, seconds, task)?
+            volume_to_closed_surface(volume, settings, seconds, task)?
         }
     };
     rendered.report.spacing_mm = Some(volume.geometry().spacing_mm());
@@ -115,7 +117,7 @@ fn volume_to_mesh(volume: &Volume, settings: &Settings, task: &Task) -> Result<R
     Ok(rendered)
 }
 
-fn volume_to_isosurface(
+fn volume_to_closed_surface(
     volume: &Volume,
     settings: &Settings,
     mut seconds: Seconds,
@@ -138,17 +140,26 @@ fn volume_to_isosurface(
         .map(|crop| volume.cropped(crop))
         .transpose()?;
     let volume = cropped.as_ref().unwrap_or(volume);
-    // Cubes are filled in one way of several: how the voxels were stored must not show.
+    // Cubes are filled in one way of several, and slices are not columns: how the voxels were
+    // stored must not show.
     let volume = volume.in_patient_order(task)?;
     let placing = IsosurfaceSettings {
         threshold_hu: settings.threshold.hu(),
         true_edges: settings.true_edges,
     };
-    let mesh = isosurface(&volume, placing, task)?;
+    let (mesh, labelled) = if settings.method == Method::Labelled {
+        let surface = labelled_surface(&volume, placing, task)?;
+        let of_labels = (surface.tetrahedra, surface.filled_mm3);
+        (surface.mesh, Some(of_labels))
+    } else {
+        (isosurface(&volume, placing, task)?, None)
+    };
     let topology = check(&mesh, task)?;
     seconds.surface = lap(&mut clock);
     seconds.total = seconds.edges + seconds.surface;
-    let report = RenderReport::new(settings, &topology, seconds);
+    let mut report = RenderReport::new(settings, &topology, seconds);
+    report.tetrahedra = labelled.map(|(tetrahedra, _)| tetrahedra);
+    report.filled_mm3 = labelled.map(|(_, filled_mm3)| filled_mm3);
     Ok(Rendered { mesh, report })
 }
 

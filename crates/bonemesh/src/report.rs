@@ -62,6 +62,8 @@ pub struct RenderReport {
     pub manifold: bool,
     /// Parts of the mesh that do not touch.
     pub components: usize,
+    /// Volume of air that labelled tetrahedra filled where the bone only touched itself.
+    pub filled_mm3: Option<f64>,
     /// Volume inside the mesh; with alpha it goes through the centres of the edge pixels.
     pub volume_mm3: f64,
     /// Seconds of each step.
@@ -90,6 +92,7 @@ impl RenderReport {
             watertight: check.watertight,
             manifold: check.manifold,
             components: check.components,
+            filled_mm3: None,
             volume_mm3: check.volume_mm3,
             seconds,
             peak_mib: peak_mib(),

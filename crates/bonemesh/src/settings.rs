@@ -17,17 +17,20 @@ pub enum Method {
     Alpha,
     /// The surface between voxels, at the true edges of the bone.
     Isosurface,
+    /// Delaunay tetrahedra of points on the true edges, each bone or not by what lies in it.
+    Labelled,
 }
 
 impl Method {
     /// Every method, in the order in which they are offered.
-    pub const ALL: [Self; 2] = [Self::Alpha, Self::Isosurface];
+    pub const ALL: [Self; 3] = [Self::Alpha, Self::Isosurface, Self::Labelled];
 
     /// The name used on the command line, in Python and in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Alpha => "alpha",
             Self::Isosurface => "isosurface",
+            Self::Labelled => "labelled",
         }
     }
 }
@@ -71,8 +74,8 @@ pub struct Settings {
     pub method: Method,
     /// Largest circumradius kept, in mm; `None` takes the mean distance to 100 neighbours.
     pub alpha_mm: Option<f64>,
-    /// Places an isosurface at the true edges of the bone; otherwise where the grey equals the
-    /// threshold.
+    /// Places an isosurface or labelled tetrahedra at the true edges of the bone; otherwise where
+    /// the grey equals the threshold.
     pub true_edges: bool,
     /// Part of the volume to use; `None` uses all of it.
     pub crop: Option<CropBox>,

@@ -25,15 +25,16 @@ enum Source {
 ///   "auto" finds it in the volume, a name ("skull", "cortical", "thin-bone", "teeth") takes it
 ///   from the literature; `report["threshold_reason"]` says how.
 /// - `method`: "alpha", the boundary of the Delaunay tetrahedra of edge points with a circumradius
-///   up to alpha, or "isosurface", the closed surface between voxels.
+///   up to alpha; "isosurface", the closed surface between voxels; or "labelled", the closed
+///   boundary of Delaunay tetrahedra, each bone or not by what lies in it, for thick slices.
 /// - `sigma`: Canny's smoothing in pixels.
 /// - `series`: UID or number (1 is the largest) where a folder holds several.
 /// - `one_series`: all slices that fit together are one series, whatever UIDs they name.
 /// - `crop`: "I0:I1,J0:J1,K0:K1" or three pairs: columns, rows, slices, from 0, ends not included.
 /// - `sample_percent`, `sampler`, `seed`: use only a part of the points; None uses all.
 /// - `alpha_mm`: largest circumradius; None takes the mean distance to 100 neighbours.
-/// - `true_edges`: an isosurface lies at the true edges of the bone, else where the grey equals the
-///   threshold.
+/// - `true_edges`: an isosurface or labelled one lies at the true edges of the bone, else where
+///   the grey equals the threshold.
 /// - `threads`: worker threads; None is one a core. The result does not depend on it.
 /// - `progress`: called as `progress(stage, fraction)` on this thread.
 /// - `cancel`: a `Cancel` that stops the work.

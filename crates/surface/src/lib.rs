@@ -4,6 +4,10 @@
 //!   whatever the threshold: a closed 2-manifold without self-intersections. Limits: stairs show
 //!   on slices much thicker than the bone's detail; a wall thinner than twice the scan's blur
 //!   comes out too thick.
+//! - [`labelled_surface`] takes the boundary of Delaunay tetrahedra, each bone or not by what lies
+//!   in it: as true as the isosurface and as closed, a quarter fewer triangles, and no stairs where
+//!   slices are thick. Limits: three times the time; flat bone thinner than a slice is as wrong as
+//!   in every method; where bone only touched itself, a little air is filled, and said.
 //! - [`alpha_surface`] is the published method, for point clouds. Limits: its surface is closed,
 //!   but may touch itself in edges and vertices, where a check reports it as not manifold; and
 //!   alpha is one length for the whole cloud, so thin gaps close where it is large and holes open
@@ -39,12 +43,14 @@
 
 mod alpha;
 mod isosurface;
+mod labelled;
 
 pub use alpha::{AlphaSurface, alpha_boundary, alpha_surface, boundary_surface};
 use bonemesh_delaunay::DelaunayError;
 use bonemesh_mesh::MeshError;
 use bonemesh_task::Cancelled;
 pub use isosurface::{IsosurfaceSettings, isosurface};
+pub use labelled::{LabelledSurface, labelled_surface};
 
 /// Why no surface could be made, and the remedy.
 #[non_exhaustive]

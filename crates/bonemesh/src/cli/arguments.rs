@@ -109,7 +109,8 @@ pub(super) struct SurfaceArguments {
     /// Largest circumradius kept in mm [default: mean distance to 100 neighbours].
     #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = length_mm)]
     alpha: Option<f64>,
-    /// Puts an isosurface where the grey equals the threshold, not at the true edges of the bone.
+    /// Puts an isosurface or a labelled one where the grey equals the threshold, not at the true
+    /// edges of the bone.
     #[arg(long)]
     at_threshold: bool,
 }

@@ -315,7 +315,7 @@ def render(
     path_or_volume: _Path | Volume,
     *,
     threshold_hu: float | _Threshold = ...,
-    method: Literal["alpha", "isosurface"] = "alpha",
+    method: Literal["alpha", "isosurface", "labelled"] = "alpha",
     sigma: float = 1.0,
     series: SupportsIndex | str | None = None,
     one_series: bool = False,

@@ -5,20 +5,20 @@ use ndarray::{CowArray, Ix3};
 
 /// Voxels in the order slice, row, column: a volume's own, or a copy where they are stored in
 /// another order.
-pub(super) enum Ordered<'a> {
+pub(crate) enum Ordered<'a> {
     I16(CowArray<'a, i16, Ix3>),
     F32(CowArray<'a, f32, Ix3>),
 }
 
 impl<'a> Ordered<'a> {
-    pub(super) fn of(volume: &'a Volume) -> Self {
+    pub(crate) fn of(volume: &'a Volume) -> Self {
         match volume.voxels() {
             Voxels::I16(hu) => Self::I16(hu.as_standard_layout()),
             Voxels::F32(hu) => Self::F32(hu.as_standard_layout()),
         }
     }
 
-    pub(super) fn grey(&self) -> Grey<'_> {
+    pub(crate) fn grey(&self) -> Grey<'_> {
         const ORDERED: &str = "the voxels were put in order, else it is a bug";
         let shape = |(slices, rows, columns): (usize, usize, usize)| [columns, rows, slices];
         match self {
@@ -30,7 +30,7 @@ impl<'a> Ordered<'a> {
 
 /// Hounsfield units of a volume, read by column, row, slice.
 #[derive(Clone, Copy)]
-pub(super) enum Grey<'a> {
+pub(crate) enum Grey<'a> {
     I16(&'a [i16], [usize; 3]),
     F32(&'a [f32], [usize; 3]),
 }
@@ -38,7 +38,7 @@ pub(super) enum Grey<'a> {
 impl Grey<'_> {
     /// Columns, rows, slices.
     #[inline]
-    pub(super) fn shape(&self) -> [usize; 3] {
+    pub(crate) fn shape(&self) -> [usize; 3] {
         match self {
             Self::I16(_, shape) | Self::F32(_, shape) => *shape,
         }
@@ -46,7 +46,7 @@ impl Grey<'_> {
 
     /// Of a voxel.
     #[inline]
-    pub(super) fn at(&self, [i, j, k]: [usize; 3]) -> f32 {
+    pub(crate) fn at(&self, [i, j, k]: [usize; 3]) -> f32 {
         let [columns, rows, _] = self.shape();
         let place = (k * rows + j) * columns + i;
         match self {
@@ -57,7 +57,7 @@ impl Grey<'_> {
 
     /// At any place, in voxels: linear between the eight around it, that of the border beyond it.
     #[inline]
-    pub(super) fn between(&self, place: [f32; 3]) -> f32 {
+    pub(crate) fn between(&self, place: [f32; 3]) -> f32 {
         let shape = self.shape();
         let mut low = [0; 3];
         let mut part = [0.0; 3];
@@ -83,7 +83,7 @@ impl Grey<'_> {
 
     /// Change for each voxel along columns, rows and slices, across two voxels.
     #[inline]
-    pub(super) fn gradient(&self, place: [f32; 3]) -> [f32; 3] {
+    pub(crate) fn gradient(&self, place: [f32; 3]) -> [f32; 3] {
         std::array::from_fn(|axis| {
             let beside = |by: f32| {
                 let mut p = place;

@@ -12,13 +12,13 @@
 mod blur;
 mod cases;
 mod edge;
-mod grey;
+pub(crate) mod grey;
 mod level;
-mod march;
-mod signs;
+pub(crate) mod march;
+pub(crate) mod signs;
 
 use bonemesh_mesh::TriangleMesh;
-use bonemesh_task::Task;
+use bonemesh_task::{Cancelled, Task};
 use bonemesh_volume::{Affine, Volume};
 use rayon::prelude::*;
 
@@ -29,7 +29,7 @@ use signs::Signs;
 
 /// Vertices stay away from voxels by this part of the step between two: those around one voxel
 /// remain distinct also as 32-bit numbers.
-const FROM_VOXEL: f32 = 0.02;
+pub(crate) const FROM_VOXEL: f32 = 0.02;
 
 /// How an isosurface is placed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,17 +55,13 @@ pub fn isosurface(
 ) -> Result<TriangleMesh, SurfaceError> {
     let ordered = Ordered::of(volume);
     let grey = ordered.grey();
-    let threshold = match grey {
-        Grey::I16(..) => settings.threshold_hu.floor() + 0.5,
-        Grey::F32(..) => settings.threshold_hu,
-    } as f32;
     let affine = volume.geometry().patient_from_voxel();
     if settings.true_edges {
-        let spacing = volume.geometry().spacing_mm().map(|v| v as f32);
-        let above = level::above_level(&grey, threshold, spacing, steepest(affine), task)?;
+        let above = above_level(volume, &grey, settings, task)?;
         let above = Grey::F32(&above, grey.shape());
         surface(grey.shape(), |at| above.at(at), affine, settings, task)
     } else {
+        let threshold = between_units(&grey, settings.threshold_hu);
         surface(
             grey.shape(),
             |at| grey.at(at) - threshold,
@@ -74,6 +70,45 @@ pub fn isosurface(
             task,
         )
     }
+}
+
+/// A threshold that no voxel has.
+fn between_units(grey: &Grey<'_>, threshold_hu: f64) -> f32 {
+    let threshold = match grey {
+        Grey::I16(..) => threshold_hu.floor() + 0.5,
+        Grey::F32(..) => threshold_hu,
+    };
+    threshold as f32
+}
+
+/// Grey above the level that a surface follows, voxel by voxel: positive inside. The stage is
+/// `edges`.
+pub(crate) fn above_level(
+    volume: &Volume,
+    grey: &Grey<'_>,
+    settings: IsosurfaceSettings,
+    task: &Task,
+) -> Result<Vec<f32>, Cancelled> {
+    let threshold = between_units(grey, settings.threshold_hu);
+    if settings.true_edges {
+        let spacing = volume.geometry().spacing_mm().map(|v| v as f32);
+        let steepest = steepest(volume.geometry().patient_from_voxel());
+        return level::above_level(grey, threshold, spacing, steepest, task);
+    }
+    let [columns, rows, slices] = grey.shape();
+    task.begin("edges", slices);
+    let mut above = vec![0.0; columns * rows * slices];
+    above
+        .par_chunks_mut(columns * rows)
+        .enumerate()
+        .try_for_each(|(k, slice)| {
+            task.advance(1)?;
+            for (place, value) in slice.iter_mut().enumerate() {
+                *value = grey.at([place % columns, place / columns, k]) - threshold;
+            }
+            Ok(())
+        })?;
+    Ok(above)
 }
 
 /// Turns a gradient in voxels into the step, in voxels, along which the grey changes fastest for
@@ -137,7 +172,7 @@ fn surface(
 
 /// Where the value passes 0 between a node and the next one along `axis`, in voxels; `None` if
 /// one of them is on the border.
-fn place_on_edge(
+pub(crate) fn place_on_edge(
     node: [usize; 3],
     axis: usize,
     shape: [usize; 3],
@@ -158,7 +193,7 @@ fn place_on_edge(
 }
 
 /// Halfway from the outermost voxels to the nodes beyond them: where their voxels end.
-fn border(node: [usize; 3], axis: usize) -> [f32; 3] {
+pub(crate) fn border(node: [usize; 3], axis: usize) -> [f32; 3] {
     let mut place = node.map(|n| n as f32 - 1.0);
     place[axis] += 0.5;
     place
