@@ -29,6 +29,10 @@ const REACH_PIXELS: (f32, f32) = (2.0, 16.0);
 const NEAR: f32 = 0.6;
 /// Parts into which steps between slices are divided where grey tells the place.
 const PLACES: f32 = 250.0;
+/// Parts of the contrast by which a grey further off may exceed a pure one, and by which a level
+/// may be off halfway, until slices tell no shares.
+const IMPURE: f32 = 0.2;
+const OFF_HALF: f32 = 0.25;
 
 /// Signed distances to the edge, positive inside.
 pub(super) struct Field {
@@ -43,8 +47,13 @@ pub(super) struct Field {
 }
 
 impl Field {
-    /// By a grey above the level, which is positive inside. The stage is `distances`.
-    pub(super) fn of(above: &Grey<'_>, voxel_mm: [f32; 3], task: &Task) -> Result<Self, Cancelled> {
+    /// By a grey and what it is above the level, positive inside. The stage is `distances`.
+    pub(super) fn of(
+        grey: &Grey<'_>,
+        above: &Grey<'_>,
+        voxel_mm: [f32; 3],
+        task: &Task,
+    ) -> Result<Self, Cancelled> {
         let shape = above.shape();
         let pixel_mm = voxel_mm[0].min(voxel_mm[1]);
         let (least, greatest) = REACH_PIXELS;
@@ -66,7 +75,7 @@ impl Field {
                     // Never 0: a voxel keeps its side.
                     let size = (distance_mm.min(reach_mm) / reach_mm * WHOLE).max(1.0) as i16;
                     parts[place] = if above.at(at) > 0.0 { size } else { -size };
-                    passes[place] = pass(above, at);
+                    passes[place] = pass(grey, above, at);
                 }
                 Ok(())
             })?;
@@ -157,16 +166,35 @@ struct Way {
     length: f32,
 }
 
-/// Where the grey passes the level between a voxel and the next slice's, in [`PLACES`].
-fn pass(above: &Grey<'_>, [i, j, k]: [usize; 3]) -> u8 {
-    if k + 1 == above.shape()[2] {
+/// Where the surface passes between a voxel and the next slice's by their grey, in [`PLACES`].
+///
+/// A slice is the mean over its thickness, so the bone's share of two slices is the sum of theirs,
+/// as long as what lies before and behind is pure and the level is halfway between. The less it is
+/// so, the more the grey is taken to change evenly.
+fn pass(grey: &Grey<'_>, above: &Grey<'_>, [i, j, k]: [usize; 3]) -> u8 {
+    let last = above.shape()[2] - 1;
+    if k == last {
         return 0;
     }
-    let (here, there) = (above.at([i, j, k]), above.at([i, j, k + 1]));
+    let value = |k: usize| above.at([i, j, k]);
+    let (here, there) = (value(k), value(k + 1));
     if (here > 0.0) == (there > 0.0) {
         return 0;
     }
-    (here / (here - there) * PLACES).round() as u8
+    // Greater towards the side where the voxel is.
+    let sign = here.signum();
+    let hu = |k: usize| sign * grey.at([i, j, k]);
+    let (here_hu, there_hu) = (hu(k), hu(k + 1));
+    let from_hu = here_hu.max(hu(k.saturating_sub(1)));
+    let to_hu = there_hu.min(hu((k + 2).min(last)));
+    let share = |hu: f32| (hu - to_hu) / (from_hu - to_hu);
+    let level_hu = f32::midpoint(here_hu - sign * here, there_hu - sign * there);
+    let impure = (share(hu(k.saturating_sub(2))) - 1.0).max(-share(hu((k + 3).min(last))));
+    let off = (impure / IMPURE).max((share(level_hu) - 0.5).abs() / OFF_HALF);
+    let by_shares = (share(here_hu) + share(there_hu) - 0.5).clamp(0.0, 1.0);
+    let evenly = here / (here - there);
+    let part = by_shares + off.clamp(0.0, 1.0) * (evenly - by_shares);
+    (part * PLACES).round() as u8
 }
 
 /// Where the grey of a slice passes the level.

@@ -19,6 +19,7 @@ use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;
 
 use super::points::Grid;
+use super::shallow::smooth;
 use ball::Ball;
 
 /// The boundary of the bone.
@@ -29,15 +30,21 @@ pub(super) struct Surface {
     pub(super) filled_mm3: f64,
 }
 
-/// Makes the boundary of the cells that are bone a 2-manifold. The stage is `surface`.
+/// Smooths the boundary of the cells that are bone by the `shallow` ones, and makes it a
+/// 2-manifold. The stage is `surface`.
 pub(super) fn surface(
     cells: &[[u32; 4]],
+    shallow: &[u32],
     is_bone: &mut [bool],
     grid: &Grid,
     task: &Task,
 ) -> Result<Surface, Cancelled> {
-    task.begin("surface", 3);
+    task.begin("surface", 4);
     let mut triangles = boundary(cells, is_bone, task)?;
+    task.advance(1)?;
+    if smooth(cells, shallow, is_bone, &triangles, grid, task)? {
+        triangles = boundary(cells, is_bone, task)?;
+    }
     task.advance(1)?;
     let mut vertices = fans::touched(&triangles, grid.coordinates.len());
     task.advance(1)?;

@@ -8,8 +8,9 @@
 //!    patient's frame; some points far from it, and a box of air.
 //! 4. The Delaunay tetrahedra of these points.
 //! 5. `labels`: each tetrahedron is bone where most of it lies inside.
-//! 6. `manifold`: where bone or air only touches itself in an edge or a vertex, air is filled.
-//! 7. The facets between bone and air.
+//! 6. `shallow`: those that lie on the surface are what makes it smoother.
+//! 7. `manifold`: where bone or air only touches itself in an edge or a vertex, air is filled.
+//! 8. The facets between bone and air.
 //!
 //! Tetrahedra overlap nowhere, exactly, and their corners are written as they are, so the surface
 //! passes through itself nowhere, also as a file of 32-bit coordinates.
@@ -18,6 +19,7 @@ mod field;
 mod labels;
 mod manifold;
 mod points;
+mod shallow;
 
 use bonemesh_delaunay::{Points, Tetrahedra, tetrahedralize};
 use bonemesh_mesh::TriangleMesh;
@@ -30,6 +32,8 @@ use crate::{IsosurfaceSettings, SurfaceError};
 use field::Field;
 use points::Grid;
 
+/// Tetrahedra that lie in the bone or in the air by less than this part of a pixel are neither.
+const SHALLOW: f32 = 0.15;
 /// A vertex that no triangle uses.
 const UNUSED: u32 = u32::MAX;
 
@@ -64,9 +68,9 @@ pub fn labelled_surface(
     let voxel_mm = geometry.spacing_mm().map(|mm| mm as f32);
     let shape = ordered.grey().shape();
     let above = above_level(volume, &ordered.grey(), settings, task)?;
-    drop(ordered);
     let above = Grey::F32(&above, shape);
-    let field = Field::of(&above, voxel_mm, task)?;
+    let field = Field::of(&ordered.grey(), &above, voxel_mm, task)?;
+    drop(ordered);
     let mut places = points::crossings(&above, &field, voxel_mm, task)?;
     if places.is_empty() {
         let threshold_hu = settings.threshold_hu;
@@ -82,10 +86,15 @@ pub fn labelled_surface(
         gram: grid.gram(),
     };
     let Tetrahedra { cells } = tetrahedralize(points, task)?;
-    let mut is_bone = labels::bone(&cells, &places, &field, task)?;
+    let depths = labels::depths(&cells, &places, &field, task)?;
     drop(places);
     drop(field);
-    let surface = manifold::surface(&cells, &mut is_bone, &grid, task)?;
+    let mut is_bone: Vec<bool> = depths.iter().map(|mm| *mm > 0.0).collect();
+    let within_mm = SHALLOW * voxel_mm.into_iter().fold(f32::INFINITY, f32::min);
+    let shallow = (0..).zip(&depths).filter(|(_, mm)| mm.abs() < within_mm);
+    let shallow: Vec<u32> = shallow.map(|(cell, _)| cell).collect();
+    drop(depths);
+    let surface = manifold::surface(&cells, &shallow, &mut is_bone, &grid, task)?;
     let mut triangles = surface.triangles;
     if triangles.is_empty() {
         // Less than a tetrahedron of bone.

@@ -166,7 +166,7 @@ impl Grid {
             let step = 2f64.powi(*exponent);
             (extent + 2.0 * air) / step < SPAN_LIMIT && farthest / step < 2f64.powi(EXACT_BITS)
         };
-        let exponent = (-FINEST..).find(fits).unwrap_or(-FINEST);
+        let exponent = (-FINEST..=EXACT_BITS).find(fits).unwrap_or(-FINEST);
         let step_mm = 2f64.powi(exponent);
         let origin = low.map(|v| ((v - air) / step_mm).floor());
         let end = [0, 1, 2].map(|k| ((high[k] + air) / step_mm).ceil() - origin[k]);
