@@ -5,9 +5,10 @@
 //!   on slices much thicker than the bone's detail; a wall thinner than twice the scan's blur
 //!   comes out too thick.
 //! - [`labelled_surface`] takes the boundary of Delaunay tetrahedra, each bone or not by what lies
-//!   in it: as true as the isosurface and as closed, a quarter fewer triangles, and no stairs where
-//!   slices are thick. Limits: three times the time; flat bone thinner than a slice is as wrong as
-//!   in every method; where bone only touched itself, a little air is filled, and said.
+//!   in it: as closed as the isosurface, on curved bone a quarter fewer triangles, and weaker
+//!   stairs where slices are thick (the table below). Limits: four to five times the time and
+//!   twice the memory; flat bone thinner than a slice is as wrong as in every method; where bone
+//!   only touched itself, a little air is filled, and said.
 //! - [`alpha_surface`] is the published method, for point clouds. Limits: its surface is closed,
 //!   but may touch itself in edges and vertices, where a check reports it as not manifold; and
 //!   alpha is one length for the whole cloud, so thin gaps close where it is large and holes open

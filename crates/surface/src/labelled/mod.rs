@@ -52,7 +52,7 @@ pub struct LabelledSurface {
 /// The surface of the bone in `volume` by labelled Delaunay tetrahedra.
 ///
 /// It goes through the points in which an [`isosurface`](crate::isosurface) crosses the edges
-/// between voxels of a slice, but on thick slices it goes from one to the next without stairs.
+/// between voxels of a slice, but goes from one thick slice to the next with weaker stairs.
 /// The stages are `edges`, `distances`, `tetrahedra`, `borders`, `labels` and `surface`.
 ///
 /// # Errors
