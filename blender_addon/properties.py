@@ -26,6 +26,11 @@ METHODS = [
         "Closed surface between voxels at the true edges of the bone, nearly whatever the threshold",
     ),
     (
+        "labelled",
+        "Labelled Tetrahedra",
+        "Closed surface of Delaunay tetrahedra, each bone or not by what lies in it; weaker stairs on thick slices",
+    ),
+    (
         "ball-pivoting",
         "Ball Pivoting",
         "For study: a ball rolls from edge point to edge point; open where slices are far apart",

@@ -62,7 +62,7 @@ pub(crate) fn cloud_to_mesh(
             surface.mesh
         }
         Method::Planar => planar_surface(cloud, task)?,
-        Method::Alpha | Method::Isosurface => {
+        Method::Alpha | Method::Isosurface | Method::Labelled => {
             return Err(Error::NotForMethod {
                 choice: "a cloud",
                 method: settings.method.name(),

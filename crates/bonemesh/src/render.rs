@@ -7,7 +7,7 @@ use std::time::Instant;
 use bonemesh_cloud::{Frame, PointCloud, extract_points, sample};
 use bonemesh_mesh::TriangleMesh;
 use bonemesh_segment::{Mask, detect_edges, threshold};
-use bonemesh_surface::{IsosurfaceSettings, isosurface};
+use bonemesh_surface::{IsosurfaceSettings, isosurface, labelled_surface};
 use bonemesh_task::{Task, pool};
 use bonemesh_volume::Volume;
 
@@ -83,7 +83,7 @@ pub fn point_cloud(
 /// # Errors
 /// [`Error::Cloud`], [`Error::Surface`], [`Error::NotForMethod`] where voxels are needed.
 pub fn mesh_cloud(cloud: &PointCloud, settings: &Settings, task: &Task) -> Result<Rendered, Error> {
-    if settings.method == Method::Isosurface {
+    if settings.method.needs_voxels() {
         return Err(Error::NotForMethod {
             choice: "a cloud",
             method: settings.method.name(),
@@ -101,9 +101,9 @@ fn volume_to_mesh(volume: &Volume, settings: &Settings, task: &Task) -> Result<R
     let chosen = chosen(volume, settings, task)?;
     let settings = &chosen.of(settings);
     let threshold_s = lap(&mut clock);
-    let mut rendered = if settings.method == Method::Isosurface {
+    let mut rendered = if settings.method.needs_voxels() {
         seconds.edges += threshold_s;
-        volume_to_isosurface(volume, settings, seconds, task)?
+        volume_to_closed_surface(volume, settings, seconds, task)?
     } else {
         let (cloud, bone_mm3) =
             volume_to_cloud(volume, settings, Frame::Patient, &mut seconds, task)?;
@@ -117,7 +117,7 @@ fn volume_to_mesh(volume: &Volume, settings: &Settings, task: &Task) -> Result<R
     Ok(rendered)
 }
 
-fn volume_to_isosurface(
+fn volume_to_closed_surface(
     volume: &Volume,
     settings: &Settings,
     mut seconds: Seconds,
@@ -140,17 +140,26 @@ fn volume_to_isosurface(
         .map(|crop| volume.cropped(crop))
         .transpose()?;
     let volume = cropped.as_ref().unwrap_or(volume);
-    // Cubes are filled in one way of several: how the voxels were stored must not show.
+    // Cubes are filled in one way of several, and slices are not columns: how the voxels were
+    // stored must not show.
     let volume = volume.in_patient_order(task)?;
     let placing = IsosurfaceSettings {
         threshold_hu: settings.threshold.hu(),
         true_edges: settings.true_edges,
     };
-    let mesh = isosurface(&volume, placing, task)?;
+    let (mesh, labelled) = if settings.method == Method::Labelled {
+        let surface = labelled_surface(&volume, placing, task)?;
+        let of_labels = (surface.tetrahedra, surface.filled_mm3);
+        (surface.mesh, Some(of_labels))
+    } else {
+        (isosurface(&volume, placing, task)?, None)
+    };
     let topology = check(&mesh, task)?;
     seconds.surface = lap(&mut clock);
     seconds.total = seconds.edges + seconds.surface;
-    let report = RenderReport::new(settings, &topology, seconds);
+    let mut report = RenderReport::new(settings, &topology, seconds);
+    report.tetrahedra = labelled.map(|(tetrahedra, _)| tetrahedra);
+    report.filled_mm3 = labelled.map(|(_, filled_mm3)| filled_mm3);
     Ok(Rendered { mesh, report })
 }
 

@@ -69,6 +69,8 @@ pub struct RenderReport {
     pub manifold: bool,
     /// Parts of the mesh that do not touch.
     pub components: usize,
+    /// Volume of air that labelled tetrahedra filled where the bone only touched itself.
+    pub filled_mm3: Option<f64>,
     /// Volume inside the mesh; with alpha it goes through the centres of the edge pixels.
     pub volume_mm3: f64,
     /// What was done to the finished mesh; `None` if nothing was asked for.
@@ -102,6 +104,7 @@ impl RenderReport {
             watertight: check.watertight,
             manifold: check.manifold,
             components: check.components,
+            filled_mm3: None,
             volume_mm3: check.volume_mm3,
             after_care: None,
             seconds,

@@ -20,6 +20,8 @@ pub enum Method {
     Alpha,
     /// The surface between voxels, at the true edges of the bone.
     Isosurface,
+    /// Delaunay tetrahedra of points on the true edges, each bone or not by what lies in it.
+    Labelled,
     /// For study: a ball rolls over the edge points.
     BallPivoting,
     /// For study: screened Poisson of the edge points and their normals.
@@ -32,20 +34,27 @@ pub enum Method {
 
 impl Method {
     /// Every method, in the order in which they are offered.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Alpha,
         Self::Isosurface,
+        Self::Labelled,
         Self::BallPivoting,
         Self::Poisson,
         Self::Tetrahedra,
         Self::Planar,
     ];
 
+    /// Whether the surface is made of voxels; otherwise of the edge points.
+    pub(crate) fn needs_voxels(self) -> bool {
+        matches!(self, Self::Isosurface | Self::Labelled)
+    }
+
     /// The name used on the command line, in Python and in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Alpha => "alpha",
             Self::Isosurface => "isosurface",
+            Self::Labelled => "labelled",
             Self::BallPivoting => "ball-pivoting",
             Self::Poisson => "poisson",
             Self::Tetrahedra => "tetrahedra",
@@ -113,8 +122,8 @@ pub struct Settings {
     pub depth: u32,
     /// Poisson's cube is so many times as large as the points.
     pub scale: f64,
-    /// Places an isosurface at the true edges of the bone; otherwise where the grey equals the
-    /// threshold.
+    /// Places an isosurface or labelled tetrahedra at the true edges of the bone; otherwise where
+    /// the grey equals the threshold.
     pub true_edges: bool,
     /// Part of the volume to use; `None` uses all of it.
     pub crop: Option<CropBox>,

@@ -35,8 +35,10 @@ pub(crate) fn methods() -> Vec<&'static str> {
 ///   "auto" finds it in the volume, a name ("skull", "cortical", "thin-bone", "teeth") takes it
 ///   from the literature; `report["threshold_reason"]` says how.
 /// - `method`: "alpha", the boundary of the Delaunay tetrahedra of edge points with a circumradius
-///   up to alpha, or "isosurface", the closed surface between voxels. For study, with limits that
-///   the library's docs name: "ball-pivoting", "poisson", "tetrahedra" (their convex hull), "planar".
+///   up to alpha; "isosurface", the closed surface between voxels; or "labelled", the closed
+///   boundary of Delaunay tetrahedra, each bone or not by what lies in it, for thick slices. For
+///   study, with limits that the library's docs name: "ball-pivoting", "poisson", "tetrahedra"
+///   (their convex hull), "planar".
 /// - `sigma`: Canny's smoothing in pixels.
 /// - `series`: UID or number (1 is the largest) where a folder holds several.
 /// - `one_series`: all slices that fit together are one series, whatever UIDs they name.
@@ -47,8 +49,8 @@ pub(crate) fn methods() -> Vec<&'static str> {
 /// - `radii_mm`: of ball pivoting; None takes 3 and 6 times the mean distance to the nearest point.
 /// - `depth`, `scale`: Poisson's cube has 2**depth cells a side (3 to 8) and is `scale` times as
 ///   large as the points.
-/// - `true_edges`: an isosurface lies at the true edges of the bone, else where the grey equals the
-///   threshold.
+/// - `true_edges`: an isosurface or labelled one lies at the true edges of the bone, else where
+///   the grey equals the threshold.
 /// - `islands`: "largest", or the least volume (mm3) of the islands kept; None keeps all.
 /// - `cavities`: "all", or the largest volume (mm3) of the cavities filled; None fills none.
 /// - `smooth_mm`: smooth and move no vertex further than this; None does not smooth.

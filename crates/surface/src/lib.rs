@@ -4,6 +4,11 @@
 //!   whatever the threshold: a closed 2-manifold without self-intersections. Limits: stairs show
 //!   on slices much thicker than the bone's detail; a wall thinner than twice the scan's blur
 //!   comes out too thick.
+//! - [`labelled_surface`] takes the boundary of Delaunay tetrahedra, each bone or not by what lies
+//!   in it: as closed as the isosurface, on curved bone a quarter fewer triangles, and weaker
+//!   stairs where slices are thick (the table below). Limits: four to five times the time and
+//!   twice the memory; flat bone thinner than a slice is as wrong as in every method; where bone
+//!   only touched itself, a little air is filled, and said.
 //! - [`alpha_surface`] is the published method, for point clouds. Limits: its surface is closed,
 //!   but may touch itself in edges and vertices, where a check reports it as not manifold; and
 //!   alpha is one length for the whole cloud, so thin gaps close where it is large and holes open
@@ -53,6 +58,21 @@
 //! Where the grey equals the threshold instead, the tube's mean is 0.013 at 640 HU and 0.434 at
 //! 250.
 //!
+//! At 350 HU, isosurface and labelled tetrahedra, on slices of 1.5 mm and of 5 mm; distance of
+//! triangles' middles to the true surface, mean and 95th percentile by area, in mm, and the mean
+//! angle between neighbouring triangles in degrees:
+//!
+//! | body | slices | isosurface | | | labelled | | |
+//! |---|---|---|---|---|---|---|---|
+//! | tube | 1.5 mm | 0.012 | 0.029 | 2.5 | 0.013 | 0.031 | 2.4 |
+//! | sphere shell | 1.5 mm | 0.030 | 0.103 | 5.4 | 0.015 | 0.032 | 3.0 |
+//! | tube | 5 mm | 0.021 | 0.064 | 3.5 | 0.021 | 0.066 | 4.0 |
+//! | sphere shell | 5 mm | 0.258 | 1.187 | 10.1 | 0.225 | 0.929 | 7.2 |
+//! | femur | 5 mm | 0.070 | 0.280 | 5.5 | 0.070 | 0.210 | 5.1 |
+//!
+//! Between slices, after S. P. Raya and J. K. Udupa, *Shape-based interpolation of multidimensional
+//! objects*, 1990.
+//!
 //! Method with alpha: E. Rier, *Generation and segmentation of 3D models of bone from CT images based on 3D
 //! point clouds* (`MASc` thesis, `McMaster` University), after H. Edelsbrunner and E. P. Muecke,
 //! *Three-dimensional alpha shapes*, 1994.
@@ -60,6 +80,7 @@
 mod alpha;
 mod ball_pivoting;
 mod isosurface;
+mod labelled;
 mod planar;
 mod poisson;
 #[cfg(test)]
@@ -75,6 +96,7 @@ use bonemesh_delaunay::DelaunayError;
 use bonemesh_mesh::MeshError;
 use bonemesh_task::Cancelled;
 pub use isosurface::{IsosurfaceSettings, isosurface};
+pub use labelled::{LabelledSurface, labelled_surface};
 pub use planar::planar_surface;
 pub use poisson::{PoissonSettings, poisson};
 pub use tetrahedra::tetrahedra_surface;

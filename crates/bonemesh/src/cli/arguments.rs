@@ -107,8 +107,8 @@ struct SamplingArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct SurfaceArguments {
-    /// How the surface is made: alpha, isosurface; for study: ball-pivoting, poisson, tetrahedra,
-    /// planar.
+    /// How the surface is made: alpha, isosurface, labelled; for study: ball-pivoting, poisson,
+    /// tetrahedra, planar.
     #[arg(long, default_value = "alpha")]
     method: Method,
     /// Largest circumradius kept in mm; or `auto`, with which the mesh has the volume of the bone's
@@ -117,7 +117,8 @@ pub(super) struct SurfaceArguments {
     alpha: Option<AlphaChoice>,
     #[command(flatten)]
     study: StudyArguments,
-    /// Puts an isosurface where the grey equals the threshold, not at the true edges of the bone.
+    /// Puts an isosurface or a labelled one where the grey equals the threshold, not at the true
+    /// edges of the bone.
     #[arg(long)]
     at_threshold: bool,
     #[command(flatten)]

@@ -357,7 +357,7 @@ def render(
     *,
     threshold_hu: float | _Threshold = ...,
     method: Literal[
-        "alpha", "isosurface", "ball-pivoting", "poisson", "tetrahedra", "planar"
+        "alpha", "isosurface", "labelled", "ball-pivoting", "poisson", "tetrahedra", "planar"
     ] = "alpha",
     sigma: float = 1.0,
     series: SupportsIndex | str | None = None,

@@ -1,8 +1,11 @@
 //! Where the surface cuts an edge between two voxels.
 
+/// Tells after which part of the step from a value to one of the other sign the surface passes.
+pub(crate) type Crossing = fn(f32, f32) -> f32;
+
 /// Vertices stay away from voxels by this part of the step between two: those around one voxel
 /// remain distinct also as 32-bit numbers.
-const FROM_VOXEL: f32 = 0.02;
+pub(crate) const FROM_VOXEL: f32 = 0.02;
 
 /// Part of an edge's contrast between two voxels from which the edge lies within their boxes.
 const SHARP: f32 = 0.5;
@@ -10,7 +13,7 @@ const SHARP: f32 = 0.5;
 /// The two voxels of an edge between nodes (see [`Signs`](super::signs::Signs)), the first and the
 /// next one along `axis`; `None` if one of them is on the border.
 #[inline]
-pub(super) fn voxels(node: [usize; 3], axis: usize, shape: [usize; 3]) -> Option<[[usize; 3]; 2]> {
+pub(crate) fn voxels(node: [usize; 3], axis: usize, shape: [usize; 3]) -> Option<[[usize; 3]; 2]> {
     let is_voxel = |at: [usize; 3]| (0..3).all(|k| (1..=shape[k]).contains(&at[k]));
     let mut next = node;
     next[axis] += 1;
@@ -19,14 +22,28 @@ pub(super) fn voxels(node: [usize; 3], axis: usize, shape: [usize; 3]) -> Option
 
 /// The place at a part of the step from a voxel to the next one along `axis`, in voxels.
 #[inline]
-pub(super) fn place(voxel: [usize; 3], axis: usize, part: f32) -> [f32; 3] {
+pub(crate) fn place(voxel: [usize; 3], axis: usize, part: f32) -> [f32; 3] {
     let mut place = voxel.map(|v| v as f32);
     place[axis] += part.clamp(FROM_VOXEL, 1.0 - FROM_VOXEL);
     place
 }
 
+/// Where the value passes 0 between a node and the next one along `axis`, in voxels; `None` if one
+/// of them is on the border.
+#[inline]
+pub(crate) fn between(
+    node: [usize; 3],
+    axis: usize,
+    shape: [usize; 3],
+    value: impl Fn([usize; 3]) -> f32,
+    crossing: impl Fn(f32, f32) -> f32,
+) -> Option<[f32; 3]> {
+    let [a, b] = voxels(node, axis, shape)?;
+    Some(place(a, axis, crossing(value(a), value(b))))
+}
+
 /// Halfway from the outermost voxels to the nodes beyond them: where their voxels end.
-pub(super) fn border(node: [usize; 3], axis: usize) -> [f32; 3] {
+pub(crate) fn border(node: [usize; 3], axis: usize) -> [f32; 3] {
     let mut place = node.map(|n| n as f32 - 1.0);
     place[axis] += 0.5;
     place
@@ -45,7 +62,7 @@ pub(crate) fn linear(a: f32, b: f32) -> f32 {
 /// a line between the values would be off by up to 0.086 of the step. The line is true of edges
 /// that take more than two steps; where they take just two, both say the same.
 #[inline]
-pub(super) fn in_boxes(a: f32, b: f32) -> f32 {
+pub(crate) fn in_boxes(a: f32, b: f32) -> f32 {
     let [a, b] = [a, b].map(|value| value.clamp(-0.5, 0.5));
     if (a - b).abs() > SHARP {
         0.5 + a.signum() * (a + b)

@@ -1,41 +1,41 @@
 //! Hounsfield units between voxels.
 
 /// What a voxel is stored as.
-pub(super) trait Voxel: Copy + Sync + Into<f32> {}
+pub(crate) trait Voxel: Copy + Sync + Into<f32> {}
 
 impl Voxel for i16 {}
 impl Voxel for f32 {}
 
 /// Voxels in the order slice, row, column, read by column, row, slice.
 #[derive(Clone, Copy)]
-pub(super) struct Grey<'a, T> {
+pub(crate) struct Grey<'a, T> {
     voxels: &'a [T],
     shape: [usize; 3],
 }
 
 impl<'a, T: Voxel> Grey<'a, T> {
     /// `shape` counts columns, rows and slices.
-    pub(super) fn new(voxels: &'a [T], shape: [usize; 3]) -> Self {
+    pub(crate) fn new(voxels: &'a [T], shape: [usize; 3]) -> Self {
         assert_eq!(voxels.len(), shape.iter().product::<usize>(), "a bug");
         Self { voxels, shape }
     }
 
     /// Columns, rows, slices.
     #[inline]
-    pub(super) fn shape(&self) -> [usize; 3] {
+    pub(crate) fn shape(&self) -> [usize; 3] {
         self.shape
     }
 
     /// Of a voxel.
     #[inline]
-    pub(super) fn at(&self, [i, j, k]: [usize; 3]) -> f32 {
+    pub(crate) fn at(&self, [i, j, k]: [usize; 3]) -> f32 {
         let [columns, rows, _] = self.shape;
         self.voxels[(k * rows + j) * columns + i].into()
     }
 
     /// At any place, in voxels: linear between the eight around it, that of the border beyond it.
     #[inline]
-    pub(super) fn between(&self, place: [f32; 3]) -> f32 {
+    pub(crate) fn between(&self, place: [f32; 3]) -> f32 {
         let mut stride = 1;
         let mut first = 0;
         let mut part = [0.0; 3];
@@ -61,9 +61,16 @@ impl<'a, T: Voxel> Grey<'a, T> {
         a + part[2] * (b - a)
     }
 
+    /// [`gradient`](Self::gradient) at a part of the way from one voxel to the next.
+    #[inline]
+    pub(crate) fn gradient_between(&self, a: [usize; 3], b: [usize; 3], part: f32) -> [f32; 3] {
+        let (a, b) = (self.gradient(a), self.gradient(b));
+        [0, 1, 2].map(|axis| a[axis] + part * (b[axis] - a[axis]))
+    }
+
     /// Change for each voxel along columns, rows and slices, across two voxels.
     #[inline]
-    pub(super) fn gradient(&self, voxel: [usize; 3]) -> [f32; 3] {
+    pub(crate) fn gradient(&self, voxel: [usize; 3]) -> [f32; 3] {
         std::array::from_fn(|axis| {
             let beside = |at: usize| {
                 let mut place = voxel;

@@ -83,8 +83,7 @@ fn edges<T: Voxel>(
                     return;
                 };
                 let part = cut::linear(grey.at(a) - threshold_hu, grey.at(b) - threshold_hu);
-                let (at_a, at_b) = (grey.gradient(a), grey.gradient(b));
-                let gradient = [0, 1, 2].map(|d| at_a[d] + part * (at_b[d] - at_a[d]));
+                let gradient = grey.gradient_between(a, b, part);
                 let place = cut::place(a, axis, part);
                 edges.extend(edge_near(grey, place, gradient, &steepest));
             });

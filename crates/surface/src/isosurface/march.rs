@@ -47,7 +47,7 @@ impl Rows {
 
 /// Calls `found` with every cut edge of a slice of nodes, in the order of vertices: its lower
 /// node and its axis.
-pub(super) fn cut_edges(signs: &Signs, k: usize, mut found: impl FnMut([usize; 3], usize)) {
+pub(crate) fn cut_edges(signs: &Signs, k: usize, mut found: impl FnMut([usize; 3], usize)) {
     for j in 0..signs.rows() {
         for axis in 0..3 {
             for w in 0..signs.words {

@@ -13,19 +13,20 @@ mod blur;
 mod cases;
 pub(crate) mod cut;
 mod edge;
-mod grey;
+pub(crate) mod grey;
 mod layer;
 mod level;
-mod march;
-mod signs;
+pub(crate) mod march;
+pub(crate) mod signs;
 
 use bonemesh_mesh::TriangleMesh;
-use bonemesh_task::Task;
+use bonemesh_task::{Cancelled, Task};
 use bonemesh_volume::{Affine, Volume, Voxels};
 use ndarray::Array3;
 use rayon::prelude::*;
 
 use crate::SurfaceError;
+use cut::Crossing;
 use grey::{Grey, Voxel};
 use march::{Rows, cut_edges, triangles};
 use signs::Signs;
@@ -40,6 +41,17 @@ pub struct IsosurfaceSettings {
     pub true_edges: bool,
 }
 
+impl IsosurfaceSettings {
+    /// How values between voxels pass 0.
+    pub(crate) fn crossing(self) -> Crossing {
+        if self.true_edges {
+            cut::in_boxes
+        } else {
+            cut::linear
+        }
+    }
+}
+
 /// The surface of the bone in `volume`, outward-oriented, in patient space (mm).
 ///
 /// Whole Hounsfield units are compared half a unit higher, so that a voxel of just the threshold
@@ -52,46 +64,98 @@ pub fn isosurface(
     settings: IsosurfaceSettings,
     task: &Task,
 ) -> Result<TriangleMesh, SurfaceError> {
-    // Whole numbers have room between them, so that no voxel lies just on the surface.
-    match volume.voxels() {
-        Voxels::I16(hu) => of_voxels(
-            hu,
-            settings.threshold_hu.floor() + 0.5,
-            volume,
-            settings,
+    let affine = volume.geometry().patient_from_voxel();
+    let mesh = if settings.true_edges {
+        let above = above_level(volume, settings, task)?;
+        let above = Grey::new(&above, shape(volume));
+        surface(
+            above.shape(),
+            |at| above.at(at),
+            settings.crossing(),
+            affine,
             task,
-        ),
-        Voxels::F32(hu) => of_voxels(hu, settings.threshold_hu, volume, settings, task),
-    }
+        )
+    } else {
+        let threshold = threshold(volume, settings);
+        match volume.voxels() {
+            Voxels::I16(hu) => in_order(hu, |grey| {
+                let above = |at| grey.at(at) - threshold;
+                surface(grey.shape(), above, settings.crossing(), affine, task)
+            }),
+            Voxels::F32(hu) => in_order(hu, |grey| {
+                let above = |at| grey.at(at) - threshold;
+                surface(grey.shape(), above, settings.crossing(), affine, task)
+            }),
+        }
+    };
+    mesh?.ok_or(SurfaceError::NothingAbove {
+        threshold_hu: settings.threshold_hu,
+    })
 }
 
-fn of_voxels<T: Voxel>(
-    hu: &Array3<T>,
-    above_hu: f64,
+/// Columns, rows, slices.
+pub(crate) fn shape(volume: &Volume) -> [usize; 3] {
+    let [slices, rows, columns] = volume.geometry().shape();
+    [columns, rows, slices]
+}
+
+/// Voxels in the order slice, row, column, whatever order they are stored in.
+fn in_order<T: Voxel, R>(hu: &Array3<T>, of: impl FnOnce(&Grey<'_, T>) -> R) -> R {
+    let (slices, rows, columns) = hu.dim();
+    let hu = hu.as_standard_layout();
+    let hu = hu.as_slice().expect("in order, else it is a bug");
+    of(&Grey::new(hu, [columns, rows, slices]))
+}
+
+/// The threshold, above all of its whole numbers: so none of them lies just on the surface.
+fn threshold(volume: &Volume, settings: IsosurfaceSettings) -> f32 {
+    let hu = match volume.voxels() {
+        Voxels::I16(_) => settings.threshold_hu.floor() + 0.5,
+        Voxels::F32(_) => settings.threshold_hu,
+    };
+    hu as f32
+}
+
+/// What voxels are above the level that a surface follows, by slice, row and column: positive
+/// inside; at the true edges as a part of their contrast, otherwise in HU. The stage is `edges`.
+pub(crate) fn above_level(
     volume: &Volume,
     settings: IsosurfaceSettings,
     task: &Task,
-) -> Result<TriangleMesh, SurfaceError> {
-    let (slices, rows, columns) = hu.dim();
-    let shape = [columns, rows, slices];
-    let ordered = hu.as_standard_layout();
-    let hu = ordered.as_slice().expect("in order, else it is a bug");
-    let grey = Grey::new(hu, shape);
-    let threshold = above_hu as f32;
-    let affine = volume.geometry().patient_from_voxel();
-    let nothing = SurfaceError::NothingAbove {
-        threshold_hu: settings.threshold_hu,
-    };
-    let mesh = if settings.true_edges {
-        let spacing = volume.geometry().spacing_mm().map(|v| v as f32);
-        let above = level::above_level(&grey, threshold, spacing, steepest(affine), task)?;
-        let above = Grey::new(&above, shape);
-        surface(shape, |at| above.at(at), cut::in_boxes, affine, task)?
-    } else {
-        let above = |at| grey.at(at) - threshold;
-        surface(shape, above, cut::linear, affine, task)?
-    };
-    mesh.ok_or(nothing)
+) -> Result<Vec<f32>, Cancelled> {
+    match volume.voxels() {
+        Voxels::I16(hu) => in_order(hu, |grey| above(grey, volume, settings, task)),
+        Voxels::F32(hu) => in_order(hu, |grey| above(grey, volume, settings, task)),
+    }
+}
+
+fn above<T: Voxel>(
+    grey: &Grey<'_, T>,
+    volume: &Volume,
+    settings: IsosurfaceSettings,
+    task: &Task,
+) -> Result<Vec<f32>, Cancelled> {
+    let threshold = threshold(volume, settings);
+    if settings.true_edges {
+        let geometry = volume.geometry();
+        let spacing = geometry.spacing_mm().map(|v| v as f32);
+        let steepest = steepest(geometry.patient_from_voxel());
+        return level::above_level(grey, threshold, spacing, steepest, task);
+    }
+    let [columns, rows, slices] = grey.shape();
+    task.begin("edges", slices);
+    let mut above = vec![0.0; columns * rows * slices];
+    above
+        .par_chunks_mut(columns * rows)
+        .enumerate()
+        .try_for_each(|(k, slice)| {
+            task.advance(1)?;
+            for (place, value) in slice.iter_mut().enumerate() {
+                *value = grey.at([place % columns, place / columns, k]) - threshold;
+            }
+            Ok(())
+        })?;
+    Ok(above)
 }
 
 /// Turns a gradient in voxels into the step, in voxels, along which the grey changes fastest for
@@ -136,10 +200,8 @@ pub(crate) fn surface(
             task.advance(1)?;
             let mut vertices = Vec::new();
             cut_edges(&signs, k, |node, axis| {
-                let place = match cut::voxels(node, axis, shape) {
-                    Some([a, b]) => cut::place(a, axis, crossing(value(a), value(b))),
-                    None => cut::border(node, axis),
-                };
+                let place = cut::between(node, axis, shape, &value, &crossing)
+                    .unwrap_or_else(|| cut::border(node, axis));
                 vertices.push(affine.apply(place.map(f64::from)));
             });
             Ok(vertices)

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 /// Bits of a grid of nodes: the voxels and one outside node beyond each border.
 ///
 /// Node `[i, j, k]` (column, row, slice) is voxel `[i - 1, j - 1, k - 1]`.
-pub(super) struct Signs {
+pub(crate) struct Signs {
     /// Nodes along columns, rows and slices.
     pub(super) nodes: [usize; 3],
     /// 64-bit words a row of voxels has, one more than it needs at most.
@@ -17,7 +17,7 @@ pub(super) struct Signs {
 
 impl Signs {
     /// Of voxels `shape` (columns, rows, slices), inside where `is_inside` says so.
-    pub(super) fn of(
+    pub(crate) fn of(
         shape: [usize; 3],
         is_inside: impl Fn([usize; 3]) -> bool + Sync,
         task: &Task,
@@ -51,7 +51,7 @@ impl Signs {
     }
 
     /// Node slices.
-    pub(super) fn slices(&self) -> usize {
+    pub(crate) fn slices(&self) -> usize {
         self.nodes[2]
     }
 
