@@ -26,6 +26,10 @@ use front::Front;
 /// The smallest ball of the published study: so many mean distances to the nearest neighbour.
 const RADIUS_FACTOR: f64 = 3.0;
 
+/// Nearest unused points among which the other corners of a first triangle are looked for: among all,
+/// points that no ball can reach would each cost the square of their neighbours.
+const SEED_NEIGHBOURS: usize = 24;
+
 /// A triangle agrees with a normal less than square to its own; more than ties are moved by.
 const LEAST_COSINE: f64 = 0.01;
 
@@ -162,16 +166,12 @@ impl Rolling<'_> {
         if self.front.is_used(first) {
             return Ok(None);
         }
-        let near = balls.around(first);
+        let mut near = balls.around(first);
+        near.retain(|&v| !self.front.is_used(v));
+        near.truncate(SEED_NEIGHBOURS);
         for (i, &second) in near.iter().enumerate() {
             self.task.check()?;
-            if self.front.is_used(second) {
-                continue;
-            }
             for &third in &near[..i] {
-                if self.front.is_used(third) {
-                    continue;
-                }
                 let Some(corners) = self.outward([first, second, third], balls) else {
                     continue;
                 };
