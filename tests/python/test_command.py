@@ -197,8 +197,10 @@ def test_phantoms(command, tmp_path):
 
 
 def test_a_phantom_is_scanned_as_asked(command, tmp_path):
-    words = "--pixel 1 --slice 2.5 --blur 0.5 --noise 7 --seed 3".split()
-    answer = command("phantom", "tube", tmp_path / "tube", *words, "--json")
+    voxels = ["--pixel", "1", "--slice", "2.5"]
+    noise = ["--blur", "0.5", "--noise", "7", "--seed", "3"]
+    folder = tmp_path / "tube"
+    answer = command("phantom", "tube", folder, *voxels, *noise, "--json")
     assert answer.code == DONE, answer.err
     volume = bonemesh.read_series(answer.json["series"])
     same = bonemesh.phantom(

@@ -61,9 +61,7 @@ def test_parts_of_the_head_have_names():
 
 def test_a_scan_with_other_voxels_shows_the_same_body():
     usual = bonemesh.phantom("tube", psf_px=0, noise_hu=0)
-    thick = bonemesh.phantom(
-        "tube", pixel_mm=0.35, slice_mm=2.5, psf_px=0, noise_hu=0
-    )
+    thick = bonemesh.phantom("tube", pixel_mm=0.35, slice_mm=2.5, psf_px=0, noise_hu=0)
     assert thick.spacing_mm == pytest.approx((0.35, 0.35, 2.5))
     bone = [
         ((v.hu.astype(float) - 40) / 1200).sum() * np.prod(v.spacing_mm)
