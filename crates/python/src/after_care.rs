@@ -10,16 +10,18 @@ use crate::errors;
 use crate::mesh::Mesh;
 
 /// Which islands are kept: "largest", or the least volume in mm3.
+#[derive(Clone, Copy)]
 pub(crate) struct Kept(pub(crate) Islands);
 
 /// Which cavities are filled: "all", or the largest volume in mm3.
+#[derive(Clone, Copy)]
 pub(crate) struct Filled(pub(crate) Cavities);
 
 impl FromPyObject<'_, '_> for Kept {
     type Error = PyErr;
 
     fn extract(value: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
-        let mm3 = word_or_volume(&value, "largest", "islands")?;
+        let mm3 = word_or_volume(value, "largest", "islands")?;
         Ok(Self(mm3.map_or(Islands::Largest, Islands::AtLeastMm3)))
     }
 }
@@ -28,17 +30,13 @@ impl FromPyObject<'_, '_> for Filled {
     type Error = PyErr;
 
     fn extract(value: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
-        let mm3 = word_or_volume(&value, "all", "cavities")?;
+        let mm3 = word_or_volume(value, "all", "cavities")?;
         Ok(Self(mm3.map_or(Cavities::All, Cavities::AtMostMm3)))
     }
 }
 
 /// A volume, or `None` for the word.
-fn word_or_volume(
-    value: &Borrowed<'_, '_, PyAny>,
-    word: &str,
-    name: &str,
-) -> PyResult<Option<f64>> {
+fn word_or_volume(value: Borrowed<'_, '_, PyAny>, word: &str, name: &str) -> PyResult<Option<f64>> {
     if !value.is_instance_of::<PyString>() {
         return value.extract().map(Some);
     }

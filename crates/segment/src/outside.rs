@@ -40,14 +40,14 @@ fn each_slice<T: Copy + Sync + Into<f32>>(
         .zip(hu.axis_iter(Axis(0)))
         .try_for_each(|(mut outside, hu)| {
             task.check()?;
-            outside.assign(&reached(hu));
+            outside.assign(&reached(&hu));
             Ok(())
         })?;
     Ok(outside)
 }
 
 /// What air reaches from the border of a slice: a flood over neighbours in rows and columns.
-fn reached<T: Copy + Into<f32>>(hu: ArrayView2<'_, T>) -> Array2<bool> {
+fn reached<T: Copy + Into<f32>>(hu: &ArrayView2<'_, T>) -> Array2<bool> {
     let (rows, columns) = hu.dim();
     let mut reached = Array2::from_elem((rows, columns), false);
     let mut front = Vec::new();
