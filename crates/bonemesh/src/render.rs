@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use bonemesh_cloud::{Frame, PointCloud, extract_points, sample};
 use bonemesh_mesh::TriangleMesh;
-use bonemesh_segment::{Mask, detect_edges, threshold};
-use bonemesh_surface::{IsosurfaceSettings, isosurface, labelled_surface};
+use bonemesh_segment::{Mask, SegmentError, detect_edges, threshold};
+use bonemesh_surface::{IsosurfaceSettings, SurfaceError, isosurface, labelled_surface};
 use bonemesh_task::{Task, pool};
 use bonemesh_volume::Volume;
 
@@ -17,6 +17,9 @@ use crate::report::{RenderReport, Seconds, check};
 use crate::source::{Reading, Source};
 use crate::thresholds::chosen;
 use crate::{AlphaRule, Error, Method, Sampling, Settings};
+
+/// Part of the voxels that a surface encloses if nothing but its rounded corners is missing.
+const FILLED: f64 = 0.9;
 
 /// Fewer points enclose no space.
 const MIN_POINTS: usize = 4;
@@ -147,20 +150,52 @@ fn volume_to_closed_surface(
         threshold_hu: settings.threshold.hu(),
         true_edges: settings.true_edges,
     };
+    let in_words = |error| in_words(error, &volume);
     let (mesh, labelled) = if settings.method == Method::Labelled {
-        let surface = labelled_surface(&volume, placing, task)?;
+        let surface = labelled_surface(&volume, placing, task).map_err(in_words)?;
         let of_labels = (surface.tetrahedra, surface.filled_mm3);
         (surface.mesh, Some(of_labels))
     } else {
-        (isosurface(&volume, placing, task)?, None)
+        let mesh = isosurface(&volume, placing, task).map_err(in_words)?;
+        (mesh, None)
     };
     let topology = check(&mesh, task)?;
+    if topology.volume_mm3 >= FILLED * box_mm3(&volume) {
+        let (lowest_hu, highest_hu) = volume.hu_range();
+        if lowest_hu > placing.threshold_hu {
+            return Err(Error::Segment(SegmentError::NothingBelow {
+                threshold_hu: placing.threshold_hu,
+                lowest_hu,
+                highest_hu,
+            }));
+        }
+    }
     seconds.surface = lap(&mut clock);
     seconds.total = seconds.edges + seconds.surface;
     let mut report = RenderReport::new(settings, &topology, seconds);
     report.tetrahedra = labelled.map(|(tetrahedra, _)| tetrahedra);
     report.filled_mm3 = labelled.map(|(_, filled_mm3)| filled_mm3);
     Ok(Rendered { mesh, report })
+}
+
+/// A threshold that leaves nothing is refused with the range of the scan.
+fn in_words(error: SurfaceError, volume: &Volume) -> Error {
+    let SurfaceError::NothingAbove { threshold_hu } = error else {
+        return error.into();
+    };
+    let (lowest_hu, highest_hu) = volume.hu_range();
+    Error::Segment(SegmentError::NothingAbove {
+        threshold_hu,
+        lowest_hu,
+        highest_hu,
+    })
+}
+
+/// What all voxels fill, in mm3.
+fn box_mm3(volume: &Volume) -> f64 {
+    let geometry = volume.geometry();
+    let voxels: usize = geometry.shape().iter().product();
+    geometry.patient_from_voxel().determinant().abs() * voxels as f64
 }
 
 /// The cloud, and the volume (mm3) of all voxels of the bone.

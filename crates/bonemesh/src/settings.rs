@@ -16,9 +16,9 @@ use crate::AfterCare;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Method {
     /// The published method: Delaunay tetrahedra of the edge points, filtered by alpha.
-    #[default]
     Alpha,
     /// The surface between voxels, at the true edges of the bone.
+    #[default]
     Isosurface,
     /// Delaunay tetrahedra of points on the true edges, each bone or not by what lies in it.
     Labelled,
@@ -43,6 +43,16 @@ impl Method {
         Self::Tetrahedra,
         Self::Planar,
     ];
+
+    /// The method of someone who names none: the default, unless they choose what only edge points
+    /// have, a sample of them or alpha.
+    pub fn unless_named(chooses_points: bool) -> Self {
+        if chooses_points {
+            Self::Alpha
+        } else {
+            Self::default()
+        }
+    }
 
     /// Whether the surface is made of voxels; otherwise of the edge points.
     pub(crate) fn needs_voxels(self) -> bool {

@@ -34,11 +34,12 @@ pub(crate) fn methods() -> Vec<&'static str> {
 /// - `threshold_hu`: bone is strictly above it; 350 suits skulls, 600 the cortical bone of limbs.
 ///   "auto" finds it in the volume, a name ("skull", "cortical", "thin-bone", "teeth") takes it
 ///   from the literature; `report["threshold_reason"]` says how.
-/// - `method`: "alpha", the boundary of the Delaunay tetrahedra of edge points with a circumradius
-///   up to alpha; "isosurface", the closed surface between voxels; or "labelled", the closed
-///   boundary of Delaunay tetrahedra, each bone or not by what lies in it, for thick slices. For
-///   study, with limits that the library's docs name: "ball-pivoting", "poisson", "tetrahedra"
-///   (their convex hull), "planar".
+/// - `method`: "isosurface", the closed surface between voxels; "labelled", the closed boundary of
+///   Delaunay tetrahedra, each bone or not by what lies in it, for thick slices; or "alpha", the
+///   published method, the boundary of the Delaunay tetrahedra of edge points with a circumradius up
+///   to alpha. For study, with limits that the library's docs name: "ball-pivoting", "poisson",
+///   "tetrahedra" (their convex hull), "planar". None takes "isosurface", or "alpha" with `alpha_mm`
+///   or `sample_percent`.
 /// - `sigma`: Canny's smoothing in pixels.
 /// - `series`: UID or number (1 is the largest) where a folder holds several.
 /// - `one_series`: all slices that fit together are one series, whatever UIDs they name.
@@ -63,7 +64,7 @@ pub(crate) fn methods() -> Vec<&'static str> {
 /// `Mesh.report` has counts, topology, volume and seconds, as `bonemesh render --json` prints them.
 #[pyfunction]
 #[pyo3(signature = (
-    path_or_volume, *, threshold_hu=Threshold::skull(), method="alpha", sigma=1.0, series=None,
+    path_or_volume, *, threshold_hu=Threshold::skull(), method=None, sigma=1.0, series=None,
     one_series=false, crop=None, sample_percent=None, sampler="uniform", seed=0, alpha_mm=None, radii_mm=None, depth=8, scale=1.1, true_edges=true, islands=None,
     cavities=None, smooth_mm=None, triangles=None, decimate_mm=None, threads=None, progress=None,
     cancel=None
@@ -73,7 +74,7 @@ pub(crate) fn render(
     py: Python<'_>,
     path_or_volume: &Bound<'_, PyAny>,
     threshold_hu: Threshold,
-    method: &str,
+    method: Option<&str>,
     sigma: f64,
     series: Option<Choice>,
     one_series: bool,
@@ -98,9 +99,10 @@ pub(crate) fn render(
     let watch = Watch::new(py, progress, cancel)?;
     let mut settings = Settings {
         canny: options::canny(py, sigma, None)?,
-        method: method
-            .parse::<Method>()
-            .map_err(|e| errors::unusable(py, e))?,
+        method: match method {
+            Some(name) => name.parse().map_err(|e| errors::unusable(py, e))?,
+            None => Method::unless_named(alpha_mm.is_some() || sample_percent.is_some()),
+        },
         alpha_mm: alpha_mm.and_then(Alpha::mm),
         alpha_rule: match alpha_mm {
             Some(Alpha::Auto) => AlphaRule::BoneVolume,

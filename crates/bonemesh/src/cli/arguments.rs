@@ -107,10 +107,11 @@ struct SamplingArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct SurfaceArguments {
-    /// How the surface is made: alpha, isosurface, labelled; for study: ball-pivoting, poisson,
-    /// tetrahedra, planar.
-    #[arg(long, default_value = "alpha")]
-    method: Method,
+    /// How the surface is made: isosurface, labelled, or alpha, the published method; for study:
+    /// ball-pivoting, poisson, tetrahedra, planar [default: isosurface; alpha of a cloud, or with
+    /// --alpha or --sample].
+    #[arg(long)]
+    method: Option<Method>,
     /// Largest circumradius kept in mm; or `auto`, with which the mesh has the volume of the bone's
     /// voxels [default: mean distance to 100 neighbours].
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
@@ -345,7 +346,9 @@ fn listed(title: &str, names: impl Iterator<Item = (&'static str, &'static str)>
 impl EdgeArguments {
     /// The settings for rendering with `surface`.
     pub(super) fn settings(&self, surface: Option<&SurfaceArguments>) -> Settings {
-        let made = surface.map(SurfaceArguments::settings).unwrap_or_default();
+        let sampling = self.sampling.settings();
+        let of_surface = |s: &SurfaceArguments| s.settings(sampling.is_some());
+        let made = surface.map(of_surface).unwrap_or_default();
         let (threshold, auto_threshold) = match self.hu {
             HuChoice::Auto => (made.threshold, true),
             HuChoice::Given(threshold) => (threshold, false),
@@ -357,7 +360,7 @@ impl EdgeArguments {
             crop: self.crop.clone(),
             series: self.series.clone(),
             one_series: self.one_series,
-            sampling: self.sampling.settings(),
+            sampling,
             threads: self.threads,
             ..made
         }
@@ -375,15 +378,17 @@ impl SamplingArguments {
 }
 
 impl SurfaceArguments {
-    /// The settings of the surface step.
-    pub(super) fn settings(&self) -> Settings {
+    /// The settings of the surface step; `of_points` if it can only start from edge points.
+    pub(super) fn settings(&self, of_points: bool) -> Settings {
         let (alpha_mm, alpha_rule) = match self.alpha {
             Some(AlphaChoice::Auto) => (None, AlphaRule::BoneVolume),
             Some(AlphaChoice::Given(alpha_mm)) => (Some(alpha_mm), AlphaRule::default()),
             None => (None, AlphaRule::default()),
         };
         self.study.of(Settings {
-            method: self.method,
+            method: self
+                .method
+                .unwrap_or_else(|| Method::unless_named(of_points || self.alpha.is_some())),
             alpha_mm,
             alpha_rule,
             true_edges: !self.at_threshold,

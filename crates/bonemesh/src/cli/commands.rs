@@ -61,7 +61,7 @@ fn run_mesh(arguments: &MeshArguments, task: &Task) -> Result<Answer, Error> {
     let cloud = read_cloud(&arguments.cloud)?;
     let settings = Settings {
         threads: arguments.threads,
-        ..arguments.surface.settings()
+        ..arguments.surface.settings(true)
     };
     let rendered = mesh_cloud(&cloud, &settings, task)?;
     save(rendered, &arguments.output, task)

@@ -358,7 +358,8 @@ def render(
     threshold_hu: float | _Threshold = ...,
     method: Literal[
         "alpha", "isosurface", "labelled", "ball-pivoting", "poisson", "tetrahedra", "planar"
-    ] = "alpha",
+    ]
+    | None = None,
     sigma: float = 1.0,
     series: SupportsIndex | str | None = None,
     one_series: bool = False,
