@@ -58,8 +58,8 @@ def check_lines(report: Report) -> list[str]:
 
 
 def volume_text(mm3: float) -> str:
-    """A volume with its unit: mm3 as far as these are few."""
-    return f"{mm3:,.1f} mm3" if abs(mm3) < 1000.0 else f"{mm3 / 1000.0:,.2f} cm3"
+    """A volume with its unit, mm³ as far as these are few."""
+    return f"{mm3:,.1f} mm³" if abs(mm3) < 1000.0 else f"{mm3 / 1000.0:,.2f} cm³"
 
 
 def counted(count: int, one: str, many: str) -> str:

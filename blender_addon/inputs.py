@@ -99,18 +99,15 @@ def edge_options(properties: Any) -> dict[str, Any]:
 
 def after_care_options(properties: Any) -> dict[str, Any]:
     """The keyword arguments of bonemesh.render for what is done to the finished mesh: only what is asked for."""
+    islands = {"others": "largest", "small": as_typed(properties.islands_mm3)}
+    cavities = {"all": "all", "small": as_typed(properties.cavities_mm3)}
+    reduced = properties.reduce_triangles
     asked = {
-        "islands": {
-            "others": "largest",
-            "small": as_typed(properties.islands_mm3),
-        }.get(properties.remove_islands),
-        "cavities": {
-            "all": "all",
-            "small": as_typed(properties.cavities_mm3),
-        }.get(properties.fill_cavities),
+        "islands": islands.get(properties.remove_islands),
+        "cavities": cavities.get(properties.fill_cavities),
         "smooth_mm": as_typed(properties.smooth_mm) or None,
-        "triangles": properties.reduce_triangles or None,
-        "decimate_mm": as_typed(properties.decimate_mm) or None,
+        "triangles": properties.triangles if reduced == "number" else None,
+        "decimate_mm": as_typed(properties.decimate_mm) if reduced == "error" else None,
     }
     return {name: value for name, value in asked.items() if value is not None}
 

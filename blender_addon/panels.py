@@ -91,7 +91,10 @@ class BONEMESH_PT_after_care(Panel):
             column.prop(properties, "cavities_mm3")
         column.prop(properties, "smooth_mm")
         column.prop(properties, "reduce_triangles")
-        column.prop(properties, "decimate_mm")
+        if properties.reduce_triangles == "number":
+            column.prop(properties, "triangles")
+        elif properties.reduce_triangles == "error":
+            column.prop(properties, "decimate_mm")
 
 
 class BONEMESH_PT_advanced(Panel):

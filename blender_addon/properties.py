@@ -70,6 +70,15 @@ FILLED_CAVITIES = [
     ("all", "All", "Fills every closed hollow inside the bone"),
     ("small", "Up To", "Fills the closed hollows of at most this volume"),
 ]
+REDUCED_TRIANGLES = [
+    ("none", "Keep All", "Leaves the triangles as they are"),
+    ("number", "Reduce to", "Takes triangles away until a number of them is left"),
+    (
+        "error",
+        "Reduce within",
+        "Takes triangles away as long as the surface hardly moves",
+    ),
+]
 
 
 def ct_images_changed(self: "BonemeshProperties", _context: Context) -> None:
@@ -180,18 +189,24 @@ class BonemeshProperties(PropertyGroup):
         precision=3,
         step=1,
     )
-    reduce_triangles: IntProperty(
-        name="Reduce Triangles to",
-        description="Takes triangles away, where that changes the surface least, until this many are left; 0 sets no number",
-        default=0,
-        min=0,
+    reduce_triangles: EnumProperty(
+        name="Triangles",
+        description="Takes triangles away where that changes the surface least",
+        items=REDUCED_TRIANGLES,
+    )
+    triangles: IntProperty(
+        name="Number",
+        description="How many triangles are left",
+        default=200_000,
+        min=1,
+        soft_min=1000,
         soft_max=2_000_000,
         step=10_000,
     )
     decimate_mm: FloatProperty(
         name="Error (mm)",
-        description="Takes triangles away as long as the surface moves no further than this; 0 sets no bound",
-        default=0.0,
+        description="The surface moves no further than this",
+        default=0.05,
         min=0.0,
         soft_max=1.0,
         precision=3,

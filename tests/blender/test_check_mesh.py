@@ -35,7 +35,7 @@ def test_after_care_is_told_in_a_box(checks: dict[str, Any]) -> None:
     assert title == "bone"
     told = words(lines)
     assert "1 cavity removed (" in told
-    assert "cm3)" in told
+    assert "cm³)" in told
     assert "triangles removed" in told
 
 
@@ -50,7 +50,7 @@ def test_the_findings_are_the_apis_of_the_saved_file(
 def test_the_box_tells_the_verdict_and_the_figures(checks: dict[str, Any]) -> None:
     api, box = checks["api"], checks["pressed"]["box"]
     assert "Printable" in box
-    assert f"Volume: {api['volume_mm3'] / 1000:,.2f} cm3" in box
+    assert f"Volume: {api['volume_mm3'] / 1000:,.2f} cm³" in box
     assert f"Thinnest wall: {api['thinnest_wall_mm']:.2f} mm" in box
     assert f"{api['triangles']:,} triangles in 1 part" in box
     assert not any(row.startswith("! ") for row in box)

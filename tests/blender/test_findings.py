@@ -25,11 +25,11 @@ NOTHING = {
         ({}, ["Nothing had to be removed"]),
         (
             {"removed_islands": 1, "removed_islands_mm3": 12.34},
-            ["1 island removed (12.3 mm3)"],
+            ["1 island removed (12.3 mm³)"],
         ),
         (
             {"removed_cavities": 1200, "removed_cavities_mm3": 45678.0},
-            ["1,200 cavities removed (45.68 cm3)"],
+            ["1,200 cavities removed (45.68 cm³)"],
         ),
         (
             {"largest_move_mm": 0.25, "put_back_vertices": 0},
@@ -51,9 +51,9 @@ def test_after_care_is_told(report: dict[str, Any], lines: list[str]) -> None:
 
 
 def test_volumes_have_the_unit_that_keeps_them_short() -> None:
-    assert volume_text(999.94) == "999.9 mm3"
-    assert volume_text(1000.0) == "1.00 cm3"
-    assert volume_text(697_123.0) == "697.12 cm3"
+    assert volume_text(999.94) == "999.9 mm³"
+    assert volume_text(1000.0) == "1.00 cm³"
+    assert volume_text(697_123.0) == "697.12 cm³"
 
 
 def test_what_cannot_be_measured_is_not_told_as_zero() -> None:

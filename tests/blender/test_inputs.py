@@ -37,8 +37,9 @@ def fields(folder: Path, **changes: Any) -> Any:
         "fill_cavities": "none",
         "cavities_mm3": 100.0,
         "smooth_mm": 0.0,
-        "reduce_triangles": 0,
-        "decimate_mm": 0.0,
+        "reduce_triangles": "none",
+        "triangles": 200_000,
+        "decimate_mm": 0.05,
     }
     return SimpleNamespace(**(values | changes))
 
@@ -76,9 +77,10 @@ def test_a_number_is_the_one_that_was_typed(tmp_path: Path) -> None:
         ({"fill_cavities": "all"}, {"cavities": "all"}),
         ({"fill_cavities": "small", "cavities_mm3": 2.5}, {"cavities": 2.5}),
         ({"smooth_mm": 0.10000000149011612}, {"smooth_mm": 0.1}),
-        ({"reduce_triangles": 5000}, {"triangles": 5000}),
-        ({"decimate_mm": 0.25}, {"decimate_mm": 0.25}),
-        ({"islands_mm3": 7.0, "cavities_mm3": 7.0}, {}),
+        ({"reduce_triangles": "number", "triangles": 5000}, {"triangles": 5000}),
+        ({"reduce_triangles": "error", "decimate_mm": 0.25}, {"decimate_mm": 0.25}),
+        ({"reduce_triangles": "error", "decimate_mm": 0.0}, {"decimate_mm": 0.0}),
+        ({"islands_mm3": 7.0, "cavities_mm3": 7.0, "triangles": 7}, {}),
     ],
 )
 def test_only_the_after_care_that_is_asked_for_is_passed_on(

@@ -26,8 +26,7 @@ AFTER_CARE = [
     "Remove Islands [remove_islands]",
     "Fill Cavities [fill_cavities]",
     "Smooth (mm) [smooth_mm]",
-    "Reduce Triangles to [reduce_triangles]",
-    "Error (mm) [decimate_mm]",
+    "Triangles [reduce_triangles]",
 ]
 ADVANCED = [
     "series",
@@ -67,14 +66,23 @@ def test_advanced_settings_are_there_but_closed(panel: dict[str, Any]) -> None:
     assert [text.split("[")[1].rstrip("]") for text in panel["advanced"]] == ADVANCED
 
 
-def test_after_care_is_there_but_closed_and_asks_for_volumes_only_where_they_count(
+def test_after_care_is_there_but_closed_and_asks_for_numbers_only_where_they_count(
     panel: dict[str, Any],
 ) -> None:
     assert panel["after_care"] == AFTER_CARE
-    islands, cavities, *others = AFTER_CARE
-    volumes = ["Volume (mm³) [islands_mm3]", "Volume (mm³) [cavities_mm3]"]
-    asked = [islands, volumes[0], cavities, volumes[1], *others]
-    assert panel["after_care by volume"] == asked
+    islands, cavities, smooth, triangles = AFTER_CARE
+    assert panel["after_care asked for"] == [
+        [
+            islands,
+            "Volume (mm³) [islands_mm3]",
+            cavities,
+            "Volume (mm³) [cavities_mm3]",
+            smooth,
+            triangles,
+            field,
+        ]
+        for field in ("Number [triangles]", "Error (mm) [decimate_mm]")
+    ]
 
 
 def test_the_methods_are_the_librarys_and_the_default_makes_closed_surfaces(

@@ -104,11 +104,15 @@ def test_every_advanced_setting_reaches_the_api(
             {"islands": "largest", "smooth_mm": 0.2},
         ),
         (
-            {"remove_islands": "small", "islands_mm3": 50.0, "decimate_mm": 0.05},
+            {
+                "remove_islands": "small",
+                "islands_mm3": 50.0,
+                "reduce_triangles": "error",
+            },
             {"islands": 50.0, "decimate_mm": 0.05},
         ),
         (
-            {"fill_cavities": "all", "reduce_triangles": 4000},
+            {"fill_cavities": "all", "reduce_triangles": "number", "triangles": 4000},
             {"cavities": "all", "triangles": 4000},
         ),
     ],

@@ -126,7 +126,8 @@ def by_hand() -> dict[str, Any]:
 def main(zip: str, out: str, shell: str) -> dict[str, Any]:
     """Everything in one Blender."""
     stage.install(zip)
-    stage.fill_panel(shell, out, fill_cavities="all", reduce_triangles=3000)
+    fields = {"fill_cavities": "all", "reduce_triangles": "number", "triangles": 3000}
+    stage.fill_panel(shell, out, **fields)
     answer = rendered()
     bpy.context.scene.bonemesh.ct_directory = ""
     return answer | by_hand()

@@ -91,8 +91,9 @@ def main(zip: str, out: str, ct: str) -> dict[str, Any]:
         },
     }
     properties.remove_islands = properties.fill_cavities = "small"
-    answer["after_care by volume"] = drawn("BONEMESH_PT_after_care")
-    properties.remove_islands = properties.fill_cavities = "none"
+    answer["after_care asked for"] = []
+    for properties.reduce_triangles in ("number", "error"):
+        answer["after_care asked for"].append(drawn("BONEMESH_PT_after_care"))
     operator, context, gate = press("render_surface_mesh", "render")
     answer["busy"] = drawn("BONEMESH_PT_segment_ct")
     gate.open()
