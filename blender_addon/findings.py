@@ -33,7 +33,7 @@ def verdict(report: Report) -> str:
 
 
 def check_lines(report: Report) -> list[str]:
-    """The figures of a check: size, volume, parts, walls."""
+    """The figures of a check: size, volume, shells (the outsides of parts and those of cavities), walls."""
     lines = []
     bounds = report.get("bounds_mm")
     if bounds is not None:
@@ -44,8 +44,8 @@ def check_lines(report: Report) -> list[str]:
     if report.get("watertight"):
         lines.append(f"Volume: {volume_text(report['volume_mm3'])}")
     triangles = counted(report.get("triangles", 0), "triangle", "triangles")
-    parts = counted(report.get("components", 0), "part", "parts")
-    lines.append(f"{triangles} in {parts}")
+    shells = counted(report.get("components", 0), "shell", "shells")
+    lines.append(f"{triangles} in {shells}")
     thinnest = report.get("thinnest_wall_mm")
     if thinnest is None:
         lines.append("Walls: not measured, the surface encloses no volume")

@@ -52,7 +52,7 @@ def test_the_box_tells_the_verdict_and_the_figures(checks: dict[str, Any]) -> No
     assert "Printable" in box
     assert f"Volume: {api['volume_mm3'] / 1000:,.2f} cm³" in box
     assert f"Thinnest wall: {api['thinnest_wall_mm']:.2f} mm" in box
-    assert f"{api['triangles']:,} triangles in 1 part" in box
+    assert f"{api['triangles']:,} triangles in 1 shell" in box
     assert not any(row.startswith("! ") for row in box)
     assert checks["by script"]["box"] == box
 

@@ -68,6 +68,6 @@ def test_what_cannot_be_measured_is_not_told_as_zero() -> None:
     }
     assert check_lines(opened) == [
         "Size: 10 x 20 x 30.5 mm",
-        "1 triangle in 1 part",
+        "1 triangle in 1 shell",
         "Walls: not measured, the surface encloses no volume",
     ]
