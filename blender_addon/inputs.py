@@ -13,6 +13,8 @@ from typing import Any
 RESERVED_ON_WINDOWS = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 NOT_IN_NAMES = re.compile(r'[\x00-\x1f\x7f/\\:*?"<>|]')
 WHOLE_NUMBER = re.compile(r"[0-9]{1,9}")
+METHODS_OF_VOXELS = ("isosurface", "labelled")
+"""They need no edge points, so what chooses these does not apply."""
 NO_CT_IMAGES = (
     "no folder of CT images is chosen; press Select File Directory of CT Images"
 )
@@ -41,16 +43,14 @@ class RenderInputs:
         )
         directory = output_directory(resolve(properties.mesh_directory))
         name = file_stem(properties.mesh_name, "Mesh Filename")
-        percent = as_typed(properties.sample_percent)
         options = {
             "threshold_hu": float(properties.hu_threshold),
             "method": properties.method,
-            "sigma": as_typed(properties.sigma),
             "series": series_choice(properties.series),
             "one_series": properties.one_series,
             "crop": properties.crop.strip() or None,
-            "sample_percent": percent if percent < 100.0 else None,
-            "sampler": properties.sampler,
+            **edge_options(properties),
+            **after_care_options(properties),
         }
         return cls(ct_images, directory / f"{name}.stl", name, options)
 
@@ -78,6 +78,38 @@ class RegionInputs:
                 "the thickness of cut is 0 mm; set Thickness of Cut (mm) above 0"
             )
         return cls(directory / f"{name}.stl", name, thickness_mm)
+
+
+def uses_edge_points(properties: Any) -> bool:
+    """Whether the method makes its surface of edge points."""
+    return properties.method not in METHODS_OF_VOXELS
+
+
+def edge_options(properties: Any) -> dict[str, Any]:
+    """The keyword arguments of bonemesh.render for the edge points, where the method has some."""
+    if not uses_edge_points(properties):
+        return {}
+    percent = as_typed(properties.sample_percent)
+    return {
+        "sigma": as_typed(properties.sigma),
+        "sample_percent": percent if percent < 100.0 else None,
+        "sampler": properties.sampler,
+    }
+
+
+def after_care_options(properties: Any) -> dict[str, Any]:
+    """The keyword arguments of bonemesh.render for what is done to the finished mesh: only what is asked for."""
+    islands = {"others": "largest", "small": as_typed(properties.islands_mm3)}
+    cavities = {"all": "all", "small": as_typed(properties.cavities_mm3)}
+    reduced = properties.reduce_triangles
+    asked = {
+        "islands": islands.get(properties.remove_islands),
+        "cavities": cavities.get(properties.fill_cavities),
+        "smooth_mm": as_typed(properties.smooth_mm) or None,
+        "triangles": properties.triangles if reduced == "number" else None,
+        "decimate_mm": as_typed(properties.decimate_mm) if reduced == "error" else None,
+    }
+    return {name: value for name, value in asked.items() if value is not None}
 
 
 def as_typed(value: float) -> float:

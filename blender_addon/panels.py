@@ -6,8 +6,10 @@ from typing import ClassVar
 import bpy
 from bpy.types import Context, Panel, UILayout
 
-from . import contents_box, job
+from . import contents_box, job, mesh_box
+from .inputs import uses_edge_points
 from .operators.cancel import BONEMESH_OT_cancel
+from .operators.check_mesh import BONEMESH_OT_check_mesh
 from .operators.choose_ct_directory import BONEMESH_OT_choose_ct_directory
 from .operators.choose_mesh_directory import BONEMESH_OT_choose_mesh_directory
 from .operators.render_surface_mesh import BONEMESH_OT_render_surface_mesh
@@ -46,6 +48,10 @@ class BONEMESH_PT_segment_ct(Panel):
         column.prop(properties, "roi_name", text="")
         column.operator(BONEMESH_OT_select_roi.bl_idname)
 
+        column = layout.column()
+        column.operator(BONEMESH_OT_check_mesh.bl_idname)
+        mesh_box.draw(column, context)
+
         running = job.running()
         if running is not None:
             draw_progress(layout, running)
@@ -58,6 +64,37 @@ def draw_progress(layout: UILayout, running: job.Job) -> None:
     column.label(text=running.title)
     column.progress(factor=fraction, text=stage.capitalize(), type="BAR")
     column.operator(BONEMESH_OT_cancel.bl_idname, icon="X")
+
+
+class BONEMESH_PT_after_care(Panel):
+    """What is done to the mesh after it was made; nothing unless asked for."""
+
+    bl_label = "After-Care"
+    bl_parent_id = "BONEMESH_PT_segment_ct"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Segment CT"
+    bl_options: ClassVar[set[str]] = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Context) -> None:
+        """Draws the steps in the order in which they are done."""
+        properties = context.scene.bonemesh
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        column = layout.column()
+        column.prop(properties, "remove_islands")
+        if properties.remove_islands == "small":
+            column.prop(properties, "islands_mm3")
+        column.prop(properties, "fill_cavities")
+        if properties.fill_cavities == "small":
+            column.prop(properties, "cavities_mm3")
+        column.prop(properties, "smooth_mm")
+        column.prop(properties, "reduce_triangles")
+        if properties.reduce_triangles == "number":
+            column.prop(properties, "triangles")
+        elif properties.reduce_triangles == "error":
+            column.prop(properties, "decimate_mm")
 
 
 class BONEMESH_PT_advanced(Panel):
@@ -81,15 +118,17 @@ class BONEMESH_PT_advanced(Panel):
         column.prop(properties, "one_series")
         column.prop(properties, "crop")
         column.prop(properties, "method")
-        column.prop(properties, "sigma")
-        column.prop(properties, "sample_percent")
-        sampler = column.row()
+        edges = column.column()
+        edges.active = uses_edge_points(properties)
+        edges.prop(properties, "sigma")
+        edges.prop(properties, "sample_percent")
+        sampler = edges.row()
         sampler.enabled = properties.sample_percent < 100.0
         sampler.prop(properties, "sampler")
         column.prop(properties, "center_in_world")
 
 
-CLASSES = (BONEMESH_PT_segment_ct, BONEMESH_PT_advanced)
+CLASSES = (BONEMESH_PT_segment_ct, BONEMESH_PT_after_care, BONEMESH_PT_advanced)
 
 
 def register() -> None:

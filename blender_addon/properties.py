@@ -16,14 +16,14 @@ from . import scanning
 
 METHODS = [
     (
-        "alpha",
-        "Alpha",
-        "3D Delaunay tetrahedra of the edge points, those no larger than alpha kept; alpha comes from the points' mean distance",
-    ),
-    (
         "isosurface",
         "Isosurface",
         "Closed surface between voxels at the true edges of the bone, nearly whatever the threshold",
+    ),
+    (
+        "alpha",
+        "Alpha",
+        "3D Delaunay tetrahedra of the edge points, those no larger than alpha kept; alpha comes from the points' mean distance. Select Region of Interest needs it",
     ),
     (
         "labelled",
@@ -58,6 +58,25 @@ SAMPLERS = [
         "thesis-uniform",
         "Thesis, Uniform",
         "Ten neighbours at a time, in steps of ten percent (Rier's pseudo-uniform sampling)",
+    ),
+]
+REMOVED_ISLANDS = [
+    ("none", "None", "Keeps every part of the mesh"),
+    ("others", "All but the Largest", "Keeps the largest part of the mesh alone"),
+    ("small", "Smaller Than", "Keeps the parts of at least this volume"),
+]
+FILLED_CAVITIES = [
+    ("none", "None", "Leaves closed hollows inside the bone as they are"),
+    ("all", "All", "Fills every closed hollow inside the bone"),
+    ("small", "Up To", "Fills the closed hollows of at most this volume"),
+]
+REDUCED_TRIANGLES = [
+    ("none", "Keep All", "Leaves the triangles as they are"),
+    ("number", "Reduce to", "Takes triangles away until a number of them is left"),
+    (
+        "error",
+        "Reduce within",
+        "Takes triangles away as long as the surface hardly moves",
     ),
 ]
 
@@ -135,7 +154,63 @@ class BonemeshProperties(PropertyGroup):
     method: EnumProperty(
         name="Method",
         description="How the surface is made",
-        items=METHODS,
+        items=METHODS,  # the first is the default
+    )
+    remove_islands: EnumProperty(
+        name="Remove Islands",
+        description="Which loose parts of the mesh are removed, such as the table under the patient",
+        items=REMOVED_ISLANDS,
+    )
+    islands_mm3: FloatProperty(
+        name="Volume (mm³)",
+        description="Islands smaller than this are removed",
+        default=1000.0,
+        min=0.0,
+        precision=1,
+    )
+    fill_cavities: EnumProperty(
+        name="Fill Cavities",
+        description="Which closed hollows inside the bone are filled, such as marrow and closed sinuses",
+        items=FILLED_CAVITIES,
+    )
+    cavities_mm3: FloatProperty(
+        name="Volume (mm³)",
+        description="Cavities up to this volume are filled",
+        default=100.0,
+        min=0.0,
+        precision=1,
+    )
+    smooth_mm: FloatProperty(
+        name="Smooth (mm)",
+        description="Smooths without shrinking and moves no vertex further than this; 0 does not smooth",
+        default=0.0,
+        min=0.0,
+        soft_max=2.0,
+        precision=3,
+        step=1,
+    )
+    reduce_triangles: EnumProperty(
+        name="Triangles",
+        description="Takes triangles away where that changes the surface least",
+        items=REDUCED_TRIANGLES,
+    )
+    triangles: IntProperty(
+        name="Number",
+        description="How many triangles are left",
+        default=200_000,
+        min=1,
+        soft_min=1000,
+        soft_max=2_000_000,
+        step=10_000,
+    )
+    decimate_mm: FloatProperty(
+        name="Error (mm)",
+        description="The surface moves no further than this",
+        default=0.05,
+        min=0.0,
+        soft_max=1.0,
+        precision=3,
+        step=1,
     )
     series: StringProperty(
         name="Series",

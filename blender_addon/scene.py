@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING, Any
 
 import bpy
@@ -20,6 +21,11 @@ MM_IN_METRES = 0.001
 # within what a 24-bit depth buffer tells apart.
 CLIP_START_MM = 1.0
 CLIP_END_MM = 20_000.0
+
+# Keys of the reports kept with an object, and in that of a check, of what the object was then.
+AFTER_CARE = "after_care"
+CHECK = "check"
+STATE = "state"
 
 BONE_COLOUR = (0.86, 0.80, 0.68, 1.0)
 REGION_COLOUR = (0.85, 0.25, 0.10, 1.0)
@@ -53,6 +59,7 @@ def add_bone(
     keep(placed, "threshold_hu", report["threshold_hu"])
     keep(placed, "series_uid", report["series_uid"])
     keep(placed, "spacing_mm", report["spacing_mm"])
+    keep_report(placed, AFTER_CARE, report.get("after_care"))
     context.view_layer.update()
     return placed
 
@@ -72,6 +79,23 @@ def add_region(context: Any, name: str, region: bonemesh.Mesh, source: Source) -
     keep(placed, "thickness_mm", region.report["thickness_mm"])
     keep(placed, "source", source.name)
     return placed
+
+
+def keep_check(name: str, report: dict[str, Any]) -> None:
+    """Notes what a check found with the object of that name, if it is still there."""
+    checked = bpy.data.objects.get(name)
+    if checked is not None:
+        keep_report(checked, CHECK, {**report, STATE: state(checked)})
+
+
+def state(placed: Any) -> str:
+    """What changes when the object does, as far as that is seen without going through its vertices."""
+    data = placed.data
+    modifiers = [m.type for m in placed.modifiers if m.show_viewport]
+    matrix = placed.matrix_world
+    scale = [f"{s:.4g}" for s in matrix.to_scale()]
+    sizes = f"{len(data.vertices)} {len(data.polygons)}"
+    return f"{sizes} {modifiers} {scale} {matrix.is_negative}"
 
 
 def select_only(context: Any, placed: Any) -> bool:
@@ -150,6 +174,20 @@ def link(context: Any, placed: Any, collection: Any) -> None:
     if context.view_layer.objects.get(placed.name) is None:
         collection.objects.unlink(placed)
         context.scene.collection.objects.link(placed)
+
+
+def keep_report(placed: Any, key: str, report: dict[str, Any] | None) -> None:
+    """A report as the text that the library's command prints, since a property holds no list of texts."""
+    keep(placed, key, None if report is None else json.dumps(report))
+
+
+def kept_report(placed: Any, key: str) -> dict[str, Any] | None:
+    """The report kept under `key`; None where there is none or the user wrote something else there."""
+    try:
+        report = json.loads(placed.get(f"bonemesh_{key}", "null"))
+    except (TypeError, ValueError):
+        return None
+    return report if isinstance(report, dict) else None
 
 
 def keep(placed: Any, key: str, value: Any) -> None:

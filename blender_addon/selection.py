@@ -9,7 +9,7 @@ mesh attribute PATIENT_MM, and they count wherever the vertex is still where it 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -36,12 +36,13 @@ class Source:
     """The object's own `bonemesh_...` properties."""
 
 
-def read(active: Any) -> Source:
-    """Copies from a mesh object, in Edit Mode or not."""
+def read(active: Any, depsgraph: Any = None) -> Source:
+    """Copies from a mesh object, in Edit Mode or not; with `depsgraph` from what its modifiers make of it."""
     if active.mode == "EDIT":
         active.update_from_editmode()
+    shown = active if depsgraph is None else active.evaluated_get(depsgraph)
     # A mesh in Edit Mode hides its attributes; this momentary copy, which shares their memory, does not.
-    mesh = active.to_mesh(preserve_all_data_layers=True)
+    mesh = shown.to_mesh(preserve_all_data_layers=True, depsgraph=depsgraph)
     try:
         vertices, world_from_patient = patient_coordinates(active, mesh)
         return Source(
@@ -56,7 +57,26 @@ def read(active: Any) -> Source:
             properties=own_properties(active),
         )
     finally:
-        active.to_mesh_clear()
+        shown.to_mesh_clear()
+
+
+def as_exported(active: Any, depsgraph: Any) -> Source:
+    """What a file of the object would hold: with its modifiers and its size.
+
+    A mesh that was at most moved and turned keeps its exact coordinates in the patient, which do not
+    change what it is as a body.
+    """
+    source = read(active, depsgraph)
+    matrix = np.asarray(source.world_from_patient, dtype=np.float64)
+    linear = matrix[:3, :3]
+    vertices, faces = source.vertices, source.triangles
+    is_mirrored = active.matrix_world.is_negative
+    if is_mirrored or not np.allclose(linear @ linear.T, np.eye(3), atol=1e-5):
+        world = vertices.astype(np.float64) @ linear.T + matrix[:3, 3]
+        vertices = world.astype(np.float32)
+    if is_mirrored:  # Blender turns the faces of such an object round as it shows it
+        faces = np.ascontiguousarray(faces[:, ::-1])
+    return replace(source, vertices=vertices, triangles=faces)
 
 
 def patient_coordinates(placed: Any, mesh: Any) -> tuple[NDArray[np.float32], Matrix]:

@@ -8,6 +8,7 @@ import bpy
 from .. import scanning
 from . import background
 from .cancel import BONEMESH_OT_cancel
+from .check_mesh import BONEMESH_OT_check_mesh
 from .choose_ct_directory import BONEMESH_OT_choose_ct_directory
 from .choose_mesh_directory import BONEMESH_OT_choose_mesh_directory
 from .choose_series import BONEMESH_OT_choose_series
@@ -24,6 +25,7 @@ CLASSES = (
     BONEMESH_OT_choose_mesh_directory,
     BONEMESH_OT_render_surface_mesh,
     BONEMESH_OT_select_roi,
+    BONEMESH_OT_check_mesh,
     BONEMESH_OT_cancel,
 )
 

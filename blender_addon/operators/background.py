@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the two long operators share: blocking when a script calls, beside the window when a button does.
+"""What the long operators share: blocking when a script calls, beside the window when a button does.
 
 An operator says in `prepare` what is to be calculated and in `finish` what becomes of the result.
 `execute` does one after the other. `invoke` starts a worker thread and a timer; at each tick `step`

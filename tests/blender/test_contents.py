@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from conftest import Blender
 
+METHOD = "isosurface"  # the panel's default
 FIRST, SECOND = "1  ", "2  "
 
 
@@ -239,14 +240,14 @@ def test_the_series_that_the_panel_marks_is_rendered(
 ) -> None:
     reports, file = several[case]
     assert reports[-1][0] == "INFO"
-    assert_same(file, bonemesh.render(two, series=number))
+    assert_same(file, bonemesh.render(two, series=number, method=METHOD))
 
 
 def test_the_series_that_was_seen_is_rendered_though_the_numbers_changed(
     several: dict[str, Any], bonemesh: ModuleType, two: Path
 ) -> None:
     _, file = several["renumbered"]
-    assert_same(file, bonemesh.render(two, series=2))
+    assert_same(file, bonemesh.render(two, series=2, method=METHOD))
 
 
 def test_nothing_is_picked_that_nobody_has_seen(several: dict[str, Any]) -> None:
@@ -263,11 +264,11 @@ def test_a_folder_of_single_slices_can_be_taken_as_one_series(
     assert "1 series" not in several["each"]
     shown, file = several["as one"]
     assert "1 series" in shown
-    assert_same(file, bonemesh.render(own_uids, one_series=True))
+    assert_same(file, bonemesh.render(own_uids, one_series=True, method=METHOD))
 
 
 def test_a_file_with_a_whole_volume_is_rendered(
     blender: Blender, bonemesh: ModuleType, nifti: Path
 ) -> None:
     answer = blender.run("render", ct=nifti, fields={})
-    assert_same(answer["mesh"], bonemesh.render(nifti))
+    assert_same(answer["mesh"], bonemesh.render(nifti, method=METHOD))

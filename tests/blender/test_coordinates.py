@@ -28,7 +28,7 @@ def readings(
 
 @pytest.fixture(scope="module")
 def vertices(bonemesh: ModuleType, ct: Path) -> np.ndarray:
-    return bonemesh.render(ct, crop=CROP).vertices
+    return bonemesh.render(ct, crop=CROP, method="alpha").vertices
 
 
 @pytest.mark.parametrize("case", ["as made", "in edit mode", "moved and turned"])

@@ -1,15 +1,17 @@
 """The panel's fields are checked before any work begins (needs no Blender)."""
 
 from pathlib import Path
-from types import SimpleNamespace
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import pytest
 
 from blender_addon.inputs import (
+    METHODS_OF_VOXELS,
     RefusalError,
     RegionInputs,
     RenderInputs,
+    after_care_options,
     file_stem,
     series_choice,
 )
@@ -30,6 +32,14 @@ def fields(folder: Path, **changes: Any) -> Any:
         "series": "",
         "one_series": False,
         "crop": "",
+        "remove_islands": "none",
+        "islands_mm3": 1000.0,
+        "fill_cavities": "none",
+        "cavities_mm3": 100.0,
+        "smooth_mm": 0.0,
+        "reduce_triangles": "none",
+        "triangles": 200_000,
+        "decimate_mm": 0.05,
     }
     return SimpleNamespace(**(values | changes))
 
@@ -55,6 +65,48 @@ def test_a_number_is_the_one_that_was_typed(tmp_path: Path) -> None:
         ).thickness_mm
         == 0.1
     )
+
+
+@pytest.mark.parametrize(
+    ("changes", "keywords"),
+    [
+        ({}, {}),
+        ({"remove_islands": "others"}, {"islands": "largest"}),
+        ({"remove_islands": "small"}, {"islands": 1000.0}),
+        ({"remove_islands": "small", "islands_mm3": 0.0}, {"islands": 0.0}),
+        ({"fill_cavities": "all"}, {"cavities": "all"}),
+        ({"fill_cavities": "small", "cavities_mm3": 2.5}, {"cavities": 2.5}),
+        ({"smooth_mm": 0.10000000149011612}, {"smooth_mm": 0.1}),
+        ({"reduce_triangles": "number", "triangles": 5000}, {"triangles": 5000}),
+        ({"reduce_triangles": "error", "decimate_mm": 0.25}, {"decimate_mm": 0.25}),
+        ({"reduce_triangles": "error", "decimate_mm": 0.0}, {"decimate_mm": 0.0}),
+        ({"islands_mm3": 7.0, "cavities_mm3": 7.0, "triangles": 7}, {}),
+    ],
+)
+def test_only_the_after_care_that_is_asked_for_is_passed_on(
+    tmp_path: Path, changes: dict[str, Any], keywords: dict[str, Any]
+) -> None:
+    properties = fields(tmp_path, **changes)
+    assert after_care_options(properties) == keywords
+    options = RenderInputs.read(properties).options
+    assert {n: options[n] for n in keywords} == keywords
+    care = {"islands", "cavities", "smooth_mm", "triangles", "decimate_mm"}
+    assert care & set(options) == set(keywords)
+
+
+def test_what_chooses_edge_points_is_passed_on_only_where_there_are_some(
+    tmp_path: Path, bonemesh: ModuleType
+) -> None:
+    volume = bonemesh.phantom("tube", coarser=3.0)
+    edges = {"sigma": 1.0, "sample_percent": 50.0, "sampler": "uniform"}
+    for method in bonemesh.methods():
+        properties = fields(tmp_path, method=method, sample_percent=50.0)
+        options = RenderInputs.read(properties).options
+        passed = {name: options[name] for name in edges if name in options}
+        assert passed == ({} if method in METHODS_OF_VOXELS else edges)
+        if method in METHODS_OF_VOXELS:
+            with pytest.raises(bonemesh.BonemeshError, match="sample"):
+                bonemesh.render(volume, method=method, sample_percent=50.0)
 
 
 @pytest.mark.parametrize("name", ["skull", "Schädel 2", "skull.v2", "頭"])

@@ -1,6 +1,7 @@
 """The panel shows the published fields in their order, and the job that runs."""
 
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
@@ -19,6 +20,13 @@ FIELDS = [
     "Segmented Mesh Filename",
     "[roi_name]",
     "Select Region of Interest",
+    "Check Mesh",
+]
+AFTER_CARE = [
+    "Remove Islands [remove_islands]",
+    "Fill Cavities [fill_cavities]",
+    "Smooth (mm) [smooth_mm]",
+    "Triangles [reduce_triangles]",
 ]
 ADVANCED = [
     "series",
@@ -50,12 +58,38 @@ def test_what_the_images_hold_is_shown_below_their_path(panel: dict[str, Any]) -
 
 def test_the_fields_are_in_the_published_order(panel: dict[str, Any]) -> None:
     assert without_boxes(panel["main"]) == FIELDS
-    assert panel["tabs"] == ["Segment CT", "Segment CT"]
+    assert panel["tabs"] == ["Segment CT"] * 3
 
 
 def test_advanced_settings_are_there_but_closed(panel: dict[str, Any]) -> None:
-    assert panel["closed"] == [False, True]
+    assert panel["closed"] == [False, True, True]
     assert [text.split("[")[1].rstrip("]") for text in panel["advanced"]] == ADVANCED
+
+
+def test_after_care_is_there_but_closed_and_asks_for_numbers_only_where_they_count(
+    panel: dict[str, Any],
+) -> None:
+    assert panel["after_care"] == AFTER_CARE
+    islands, cavities, smooth, triangles = AFTER_CARE
+    assert panel["after_care asked for"] == [
+        [
+            islands,
+            "Volume (mm³) [islands_mm3]",
+            cavities,
+            "Volume (mm³) [cavities_mm3]",
+            smooth,
+            triangles,
+            field,
+        ]
+        for field in ("Number [triangles]", "Error (mm) [decimate_mm]")
+    ]
+
+
+def test_the_methods_are_the_librarys_and_the_default_makes_closed_surfaces(
+    panel: dict[str, Any], bonemesh: ModuleType
+) -> None:
+    assert sorted(panel["methods"]) == sorted(bonemesh.methods())
+    assert panel["method"] == panel["methods"][0] == "isosurface"
 
 
 def test_limits_and_defaults_are_the_published_ones(panel: dict[str, Any]) -> None:

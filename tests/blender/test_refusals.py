@@ -26,6 +26,8 @@ CASES = [
     ("crop is no box", ["left half"]),
     ("no such series", ["17"]),
     ("no active mesh", ["active"]),
+    ("nothing to check", ["active"]),
+    ("a mesh without slices", ["not made of slices", "method alpha", "Advanced"]),
     ("no selection", ["bone", "lasso"]),
     ("no region name", ["Segmented Mesh Filename"]),
     ("region name leaves the folder", ["../region", "no plain file name"]),

@@ -1,5 +1,6 @@
 """Rendering through the operator gives what the API gives, and puts it where a user expects it."""
 
+import json
 from pathlib import Path
 from types import ModuleType
 
@@ -7,7 +8,7 @@ import numpy as np
 import pytest
 from conftest import Blender
 
-SETTINGS = {"hu_threshold": 400, "sigma": 1.5}
+SETTINGS = {"hu_threshold": 400}
 
 
 def test_the_operator_gives_the_same_mesh_as_the_api(
@@ -15,7 +16,7 @@ def test_the_operator_gives_the_same_mesh_as_the_api(
 ) -> None:
     answer = blender.run("render", ct=ct, fields=SETTINGS)
     assert answer["result"] == ["FINISHED"]
-    expected = bonemesh.render(ct, threshold_hu=400.0, sigma=1.5)
+    expected = bonemesh.render(ct, threshold_hu=400.0, method="isosurface")
     got = np.load(answer["mesh"])
     assert np.array_equal(got["patient"], expected.vertices)
     assert np.array_equal(got["triangles"], expected.triangles)
@@ -46,7 +47,7 @@ def test_the_object_is_in_its_place_and_says_where_it_comes_from(
     (series,) = bonemesh.find_series(ct)
     properties = answer["properties"]
     assert properties["bonemesh_threshold_hu"] == 400.0
-    assert properties["bonemesh_method"] == "alpha"
+    assert properties["bonemesh_method"] == "isosurface"
     assert properties["bonemesh_series_uid"] == series.uid
     assert properties["bonemesh_version"] == bonemesh.__version__
     assert len(properties["bonemesh_spacing_mm"]) == 3
@@ -82,16 +83,60 @@ def test_center_in_world_moves_the_object_and_not_its_file(
         ({"sampler": "random"}, {}),
         ({"series": "1"}, {"series": 1}),
         ({"sigma": 2.2}, {"sigma": 2.2}),
+        ({"method": "labelled"}, {"method": "labelled"}),
     ],
 )
 def test_every_advanced_setting_reaches_the_api(
     blender: Blender, bonemesh: ModuleType, ct: Path, fields: dict, keywords: dict
 ) -> None:
-    answer = blender.run("render", ct=ct, fields=fields)
-    expected = bonemesh.render(ct, **keywords)
+    answer = blender.run("render", ct=ct, fields={"method": "alpha", **fields})
+    expected = bonemesh.render(ct, **{"method": "alpha", **keywords})
     got = np.load(answer["mesh"])
     assert np.array_equal(got["patient"], expected.vertices)
     assert np.array_equal(got["triangles"], expected.triangles)
+
+
+@pytest.mark.parametrize(
+    ("fields", "keywords"),
+    [
+        (
+            {"remove_islands": "others", "smooth_mm": 0.2},
+            {"islands": "largest", "smooth_mm": 0.2},
+        ),
+        (
+            {
+                "remove_islands": "small",
+                "islands_mm3": 50.0,
+                "reduce_triangles": "error",
+            },
+            {"islands": 50.0, "decimate_mm": 0.05},
+        ),
+        (
+            {"fill_cavities": "all", "reduce_triangles": "number", "triangles": 4000},
+            {"cavities": "all", "triangles": 4000},
+        ),
+    ],
+)
+def test_after_care_reaches_the_api_and_what_it_did_stays_with_the_object(
+    blender: Blender, bonemesh: ModuleType, ct: Path, fields: dict, keywords: dict
+) -> None:
+    answer = blender.run("render", ct=ct, fields=fields)
+    expected = bonemesh.render(ct, method="isosurface", **keywords)
+    got = np.load(answer["mesh"])
+    assert np.array_equal(got["patient"], expected.vertices)
+    assert np.array_equal(got["triangles"], expected.triangles)
+    done = json.loads(answer["properties"]["bonemesh_after_care"])
+    assert without_times(done) == without_times(expected.report["after_care"])
+
+
+def test_without_after_care_nothing_is_said_of_it(blender: Blender, ct: Path) -> None:
+    answer = blender.run("render", ct=ct, fields={})
+    assert "bonemesh_after_care" not in answer["properties"]
+
+
+def without_times(report: dict) -> dict:
+    """What does not differ from one run to the next."""
+    return {name: value for name, value in report.items() if name != "seconds"}
 
 
 def test_a_series_is_chosen_by_its_uid(

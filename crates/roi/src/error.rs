@@ -50,7 +50,7 @@ pub enum RoiError {
     },
     /// The mesh does not consist of slices.
     #[error(
-        "the mesh is not made of slices ({vertices} vertices at {levels} different z); use an unsmoothed mesh of method alpha whose z is the slice direction"
+        "the mesh is not made of slices ({vertices} vertices at {levels} different z); render it again with method alpha (in Blender: Advanced > Method), neither smoothed nor reduced, with z as the slice direction"
     )]
     NoLevels {
         /// How many vertices there are.

@@ -130,6 +130,7 @@ fn a_mesh_without_slices_is_refused() {
     }
     let error = region(&points, &selected, 5.0).unwrap_err();
     assert!(matches!(error, RoiError::NoLevels { .. }), "{error}");
+    assert!(error.to_string().contains("method alpha"), "{error}");
 }
 
 #[test]

@@ -42,7 +42,7 @@ def main(zip: str, out: str, ct: str, crop: str) -> dict[str, Any]:
     """Reads after each change."""
     folder = Path(out)
     stage.install(zip)
-    stage.fill_panel(ct, out, crop=crop)
+    stage.fill_panel(ct, out, crop=crop, method="alpha")
     bpy.ops.bonemesh.render_surface_mesh()
     bone = bpy.context.view_layer.objects.active
     stage.select_front(bone)

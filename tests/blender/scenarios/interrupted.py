@@ -11,7 +11,7 @@ from background import press, until_end
 
 def start_region(ct: str, out: str) -> tuple[Any, Any, Any, stage.Gate]:
     """Renders, selects everything, presses Select Region of Interest."""
-    stage.fill_panel(ct, out)
+    stage.fill_panel(ct, out, method="alpha")
     bpy.ops.bonemesh.render_surface_mesh()
     bone = bpy.context.view_layer.objects.active
     stage.select_front(bone)

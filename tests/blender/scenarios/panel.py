@@ -68,7 +68,12 @@ def main(zip: str, out: str, ct: str) -> dict[str, Any]:
     """Says what is shown without a job and during one."""
     stage.install(zip)
     properties = stage.fill_panel(ct, out)
-    panels = [bpy.types.BONEMESH_PT_segment_ct, bpy.types.BONEMESH_PT_advanced]
+    panels = [
+        bpy.types.BONEMESH_PT_segment_ct,
+        bpy.types.BONEMESH_PT_after_care,
+        bpy.types.BONEMESH_PT_advanced,
+    ]
+    methods = properties.bl_rna.properties["method"]
     answer = {
         "tabs": [panel.bl_category for panel in panels],
         "closed": [
@@ -76,12 +81,19 @@ def main(zip: str, out: str, ct: str) -> dict[str, Any]:
         ],
         "main": drawn("BONEMESH_PT_segment_ct"),
         "advanced": drawn("BONEMESH_PT_advanced"),
+        "methods": [item.identifier for item in methods.enum_items],
+        "method": properties.method,
+        "after_care": drawn("BONEMESH_PT_after_care"),
         "limits": {
             name: [field.hard_min, field.hard_max, field.default]
             for name in ("hu_threshold", "cut_thickness", "sample_percent", "sigma")
             for field in [properties.bl_rna.properties[name]]
         },
     }
+    properties.remove_islands = properties.fill_cavities = "small"
+    answer["after_care asked for"] = []
+    for properties.reduce_triangles in ("number", "error"):
+        answer["after_care asked for"].append(drawn("BONEMESH_PT_after_care"))
     operator, context, gate = press("render_surface_mesh", "render")
     answer["busy"] = drawn("BONEMESH_PT_segment_ct")
     gate.open()

@@ -97,7 +97,12 @@ def regions(folder: Path) -> dict[str, str]:
     for other in list(bpy.data.objects):
         bpy.data.objects.remove(other)
     answers["no active mesh"] = region()
+    answers["nothing to check"] = stage.message_of(bpy.ops.bonemesh.check_mesh)
     bpy.context.scene.bonemesh.mesh_name = "bone"
+    bpy.ops.bonemesh.render_surface_mesh()
+    stage.select_front(bpy.context.view_layer.objects.active)
+    answers["a mesh without slices"] = region()
+    bpy.context.scene.bonemesh.method = "alpha"
     bpy.ops.bonemesh.render_surface_mesh()
     bone = bpy.context.view_layer.objects.active
     select(bone, False)

@@ -65,7 +65,7 @@ def main(zip: str, out: str, ct: str, fields: dict[str, Any]) -> dict[str, Any]:
     """Says what was selected and what became of it."""
     folder = Path(out)
     stage.install(zip)
-    stage.fill_panel(ct, out, **fields)
+    stage.fill_panel(ct, out, method="alpha", **fields)
     bpy.ops.bonemesh.render_surface_mesh()
     bone = bpy.context.view_layer.objects.active
     make_gpu_context(folder)

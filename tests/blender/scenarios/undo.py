@@ -16,7 +16,7 @@ def names() -> list[str]:
 def main(zip: str, out: str, ct: str, edit: bool) -> dict[str, Any]:
     """Renders, cuts out, goes back and forth; each step by its name."""
     stage.install(zip)
-    stage.fill_panel(ct, out)
+    stage.fill_panel(ct, out, method="alpha")
     bpy.ops.ed.undo_push(message="begin")
     seen = {}
     bpy.ops.bonemesh.render_surface_mesh("EXEC_DEFAULT", True)

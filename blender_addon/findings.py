@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What was done to a mesh and what a check found, in lines for the panel. Knows no bpy."""
+
+from typing import Any
+
+Report = dict[str, Any]
+"""What the library reports: the same keys as in its JSON."""
+
+
+def after_care_lines(report: Report) -> list[str]:
+    """What was removed and changed after the mesh was made; at least one line."""
+    lines = []
+    for name in ("island", "cavity"):
+        many = {"island": "islands", "cavity": "cavities"}[name]
+        count = report.get(f"removed_{many}") or 0
+        if count:
+            volume = volume_text(report[f"removed_{many}_mm3"])
+            lines.append(f"{counted(count, name, many)} removed ({volume})")
+    moved = report.get("largest_move_mm")
+    if moved is not None:
+        kept = but(report.get("put_back_vertices"), "left in place")
+        lines.append(f"Smoothed: vertices moved up to {moved:.3f} mm{kept}")
+    removed = report.get("removed_triangles")
+    if removed is not None:
+        kept = but(report.get("held_vertices"), "left as they were")
+        lines.append(f"{counted(removed, 'triangle', 'triangles')} removed{kept}")
+    return lines or ["Nothing had to be removed"]
+
+
+def verdict(report: Report) -> str:
+    """Whether the mesh can be printed, in two words."""
+    return "Printable" if report.get("printable") else "Not printable"
+
+
+def check_lines(report: Report) -> list[str]:
+    """The figures of a check: size, volume, shells (the outsides of parts and those of cavities), walls."""
+    lines = []
+    bounds = report.get("bounds_mm")
+    if bounds is not None:
+        lowest, highest = bounds
+        sides = (f"{b - a:.4g}" for a, b in zip(lowest, highest, strict=True))
+        lines.append(f"Size: {' x '.join(sides)} mm")
+    # Without a closed surface there is no inside whose volume or walls could be measured.
+    if report.get("watertight"):
+        lines.append(f"Volume: {volume_text(report['volume_mm3'])}")
+    triangles = counted(report.get("triangles", 0), "triangle", "triangles")
+    shells = counted(report.get("components", 0), "shell", "shells")
+    lines.append(f"{triangles} in {shells}")
+    thinnest = report.get("thinnest_wall_mm")
+    if thinnest is None:
+        lines.append("Walls: not measured, the surface encloses no volume")
+        return lines
+    lines.append(f"Thinnest wall: {thinnest:.2f} mm")
+    common = report.get("wall_5_percent_mm")
+    if common is not None:
+        lines.append(f"Thinner than {common:.2f} mm at one vertex in twenty")
+    return lines
+
+
+def volume_text(mm3: float) -> str:
+    """A volume with its unit, mm³ as far as these are few."""
+    return f"{mm3:,.1f} mm³" if abs(mm3) < 1000.0 else f"{mm3 / 1000.0:,.2f} cm³"
+
+
+def counted(count: int, one: str, many: str) -> str:
+    """`count` with its noun."""
+    return f"1 {one}" if count == 1 else f"{count:,} {many}"
+
+
+def but(count: int | None, what: str) -> str:
+    """An afterthought on the vertices that were not touched, if there are any."""
+    return f", {counted(count, 'vertex', 'vertices')} {what}" if count else ""

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The box below the buttons: what was done to the active mesh, and whether it can be printed."""
+
+from typing import Any
+
+from . import findings, scene
+from .text import draw_text
+
+
+def draw(layout: Any, context: Any) -> None:
+    """Draws the box, where anything is known of the active mesh."""
+    active = context.active_object
+    if active is None or active.type != "MESH":
+        return
+    cared = scene.kept_report(active, scene.AFTER_CARE)
+    checked = scene.kept_report(active, scene.CHECK)
+    if cared is None and checked is None:
+        return
+    column = layout.box().column(align=True)
+    column.label(text=active.name, icon="MESH_DATA")
+    if cared is not None:
+        for line in findings.after_care_lines(cared):
+            draw_text(column, context, line, icon="DOT")
+    if checked is not None:
+        column.separator(factor=0.5)
+        draw_check(column, context, active, checked)
+
+
+def draw_check(column: Any, context: Any, active: Any, checked: dict[str, Any]) -> None:
+    """Draws the verdict, the reasons with their remedies, and the figures."""
+    if checked.get(scene.STATE) != scene.state(active):
+        text = "Changed since it was checked; press Check Mesh again"
+        draw_text(column, context, text, icon="ERROR")
+        return
+    icon = "CHECKMARK" if checked.get("printable") else "CANCEL"
+    column.label(text=findings.verdict(checked), icon=icon)
+    for reason in checked.get("reasons", ()):
+        draw_text(column, context, reason, icon="ERROR")
+    for line in findings.check_lines(checked):
+        draw_text(column, context, line, icon="DOT")

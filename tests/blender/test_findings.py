@@ -1,0 +1,73 @@
+"""What was done and found is told in plain lines (needs no Blender)."""
+
+from typing import Any
+
+import pytest
+
+from blender_addon.findings import after_care_lines, check_lines, volume_text
+
+NOTHING = {
+    "removed_islands": 0,
+    "removed_islands_mm3": 0.0,
+    "removed_cavities": 0,
+    "removed_cavities_mm3": 0.0,
+    "largest_move_mm": None,
+    "put_back_vertices": None,
+    "removed_triangles": None,
+    "held_vertices": None,
+    "seconds": 0.1,
+}
+
+
+@pytest.mark.parametrize(
+    ("report", "lines"),
+    [
+        ({}, ["Nothing had to be removed"]),
+        (
+            {"removed_islands": 1, "removed_islands_mm3": 12.34},
+            ["1 island removed (12.3 mm³)"],
+        ),
+        (
+            {"removed_cavities": 1200, "removed_cavities_mm3": 45678.0},
+            ["1,200 cavities removed (45.68 cm³)"],
+        ),
+        (
+            {"largest_move_mm": 0.25, "put_back_vertices": 0},
+            ["Smoothed: vertices moved up to 0.250 mm"],
+        ),
+        (
+            {"largest_move_mm": 0.25, "put_back_vertices": 1},
+            ["Smoothed: vertices moved up to 0.250 mm, 1 vertex left in place"],
+        ),
+        (
+            {"removed_triangles": 5000, "held_vertices": 20},
+            ["5,000 triangles removed, 20 vertices left as they were"],
+        ),
+        ({"removed_triangles": 0, "held_vertices": 0}, ["0 triangles removed"]),
+    ],
+)
+def test_after_care_is_told(report: dict[str, Any], lines: list[str]) -> None:
+    assert after_care_lines(NOTHING | report) == lines
+
+
+def test_volumes_have_the_unit_that_keeps_them_short() -> None:
+    assert volume_text(999.94) == "999.9 mm³"
+    assert volume_text(1000.0) == "1.00 cm³"
+    assert volume_text(697_123.0) == "697.12 cm³"
+
+
+def test_what_cannot_be_measured_is_not_told_as_zero() -> None:
+    opened = {
+        "bounds_mm": [[0.0, 0.0, 0.0], [10.0, 20.0, 30.5]],
+        "watertight": False,
+        "volume_mm3": 17.0,
+        "triangles": 1,
+        "components": 1,
+        "thinnest_wall_mm": None,
+        "wall_5_percent_mm": None,
+    }
+    assert check_lines(opened) == [
+        "Size: 10 x 20 x 30.5 mm",
+        "1 triangle in 1 shell",
+        "Walls: not measured, the surface encloses no volume",
+    ]
