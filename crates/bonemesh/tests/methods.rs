@@ -42,6 +42,7 @@ fn every_method_makes_a_mesh_of_a_shell() {
 #[test]
 fn alpha_is_matched_to_the_volume_of_the_voxels_or_says_that_it_cannot_be() {
     let settings = Settings {
+        method: Method::Alpha,
         alpha_rule: AlphaRule::BoneVolume,
         ..Settings::default()
     };

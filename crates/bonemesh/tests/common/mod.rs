@@ -4,7 +4,7 @@
 
 pub(crate) mod distance;
 
-use bonemesh::{HuThreshold, Settings, TriangleMesh, Volume, Voxels};
+use bonemesh::{HuThreshold, Method, Settings, TriangleMesh, Volume, Voxels};
 use bonemesh_phantom::Body;
 use distance::{Means, length, means, shift};
 
@@ -14,6 +14,7 @@ pub(crate) const HALFWAY_HU: f64 = 640.0;
 pub(crate) fn halfway() -> Settings {
     Settings {
         threshold: HuThreshold::new(HALFWAY_HU).unwrap(),
+        method: Method::Alpha,
         ..Settings::default()
     }
 }
