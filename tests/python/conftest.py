@@ -23,7 +23,7 @@ def volume() -> bonemesh.Volume:
 
 @pytest.fixture(scope="session")
 def mesh(volume: bonemesh.Volume) -> bonemesh.Mesh:
-    return bonemesh.render(volume)
+    return bonemesh.render(volume, method="alpha")
 
 
 @pytest.fixture(scope="session")
@@ -82,7 +82,7 @@ def command() -> Callable[..., Answer]:
 @pytest.fixture(scope="session")
 def stl(command, ct_folder, tmp_path_factory) -> Path:
     file = tmp_path_factory.mktemp("command") / "sphere.stl"
-    assert command("render", ct_folder, "-o", file).code == 0
+    assert command("render", ct_folder, "-o", file, "--method", "alpha").code == 0
     return file
 
 

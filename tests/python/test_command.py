@@ -76,9 +76,11 @@ def test_info_tells_what_is_there(command, ct_folder):
 
 
 def test_rendering_writes_what_python_writes(command, ct_folder, stl, tmp_path):
-    answer = command("render", ct_folder, "-o", tmp_path / "again.stl", "--json")
+    answer = command(
+        "render", ct_folder, "-o", tmp_path / "again.stl", "--method", "alpha", "--json"
+    )
     assert answer.code == DONE
-    mesh = bonemesh.render(ct_folder)
+    mesh = bonemesh.render(ct_folder, method="alpha")
     mesh.save(tmp_path / "python.stl")
     written = stl.read_bytes()
     assert (tmp_path / "again.stl").read_bytes() == written

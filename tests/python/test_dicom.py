@@ -163,7 +163,9 @@ def test_reading_gives_back_what_was_written(written):
 
 def test_rendering_the_series_is_rendering_the_volume(written):
     volume, folder = written
-    from_files, from_memory = bonemesh.render(folder), bonemesh.render(volume)
+    from_files, from_memory = (
+        bonemesh.render(scanned, method="alpha") for scanned in (folder, volume)
+    )
     assert len(from_files.vertices) == len(from_memory.vertices)
     distances, partners = KDTree(from_memory.vertices).query(from_files.vertices)
     assert distances.max() < 1e-3

@@ -185,7 +185,7 @@ def test_a_region_of_the_file_is_the_region_of_the_mesh(mesh, patch, tmp_path):
 
 def test_the_number_of_threads_changes_nothing(ct_folder, patch, mesh, tmp_path):
     for threads in (1, 3):
-        rendered = bonemesh.render(ct_folder, threads=threads)
+        rendered = bonemesh.render(ct_folder, method="alpha", threads=threads)
         rendered.save(tmp_path / f"mesh{threads}.stl")
         region = bonemesh.select_roi(mesh, patch, thickness_mm=8, threads=threads)
         region.save(tmp_path / f"region{threads}.stl")

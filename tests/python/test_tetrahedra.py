@@ -170,7 +170,7 @@ def test_the_alpha_surface_bounds_the_small_tetrahedra():
 
 def test_rendering_is_the_alpha_surface_of_the_cloud():
     volume = bonemesh.phantom("tube", coarser=2.0)
-    mesh = bonemesh.render(volume)
+    mesh = bonemesh.render(volume, method="alpha")
     points = bonemesh.point_cloud(volume)
     surface = bonemesh.alpha_surface(
         points, mesh.report["alpha_mm"], spacing_mm=volume.spacing_mm

@@ -9,7 +9,7 @@ use bonemesh_mesh::TriangleMesh;
 use bonemesh_segment::{Mask, SegmentError, detect_edges, threshold};
 use bonemesh_surface::{IsosurfaceSettings, SurfaceError, isosurface, labelled_surface};
 use bonemesh_task::{Task, pool};
-use bonemesh_volume::Volume;
+use bonemesh_volume::{Volume, Voxels};
 
 use crate::after_care::cared_for;
 use crate::of_cloud::cloud_to_mesh;
@@ -17,9 +17,6 @@ use crate::report::{RenderReport, Seconds, check};
 use crate::source::{Reading, Source};
 use crate::thresholds::chosen;
 use crate::{AlphaRule, Error, Method, Sampling, Settings};
-
-/// Part of the voxels that a surface encloses if nothing but its rounded corners is missing.
-const FILLED: f64 = 0.9;
 
 /// Fewer points enclose no space.
 const MIN_POINTS: usize = 4;
@@ -150,6 +147,7 @@ fn volume_to_closed_surface(
         threshold_hu: settings.threshold.hu(),
         true_edges: settings.true_edges,
     };
+    refuse_all_bone(&volume, placing.threshold_hu)?;
     let in_words = |error| in_words(error, &volume);
     let (mesh, labelled) = if settings.method == Method::Labelled {
         let surface = labelled_surface(&volume, placing, task).map_err(in_words)?;
@@ -160,16 +158,6 @@ fn volume_to_closed_surface(
         (mesh, None)
     };
     let topology = check(&mesh, task)?;
-    if topology.volume_mm3 >= FILLED * box_mm3(&volume) {
-        let (lowest_hu, highest_hu) = volume.hu_range();
-        if lowest_hu > placing.threshold_hu {
-            return Err(Error::Segment(SegmentError::NothingBelow {
-                threshold_hu: placing.threshold_hu,
-                lowest_hu,
-                highest_hu,
-            }));
-        }
-    }
     seconds.surface = lap(&mut clock);
     seconds.total = seconds.edges + seconds.surface;
     let mut report = RenderReport::new(settings, &topology, seconds);
@@ -191,11 +179,22 @@ fn in_words(error: SurfaceError, volume: &Volume) -> Error {
     })
 }
 
-/// What all voxels fill, in mm3.
-fn box_mm3(volume: &Volume) -> f64 {
-    let geometry = volume.geometry();
-    let voxels: usize = geometry.shape().iter().product();
-    geometry.patient_from_voxel().determinant().abs() * voxels as f64
+/// Refuses a threshold below all voxels: the surface would be the box around them.
+fn refuse_all_bone(volume: &Volume, threshold_hu: f64) -> Result<(), Error> {
+    // The first voxel of most scans is air.
+    let is_left = match volume.voxels() {
+        Voxels::I16(hu) => hu.iter().any(|&hu| f64::from(hu) <= threshold_hu),
+        Voxels::F32(hu) => hu.iter().any(|&hu| f64::from(hu) <= threshold_hu),
+    };
+    if is_left {
+        return Ok(());
+    }
+    let (lowest_hu, highest_hu) = volume.hu_range();
+    Err(Error::Segment(SegmentError::NothingBelow {
+        threshold_hu,
+        lowest_hu,
+        highest_hu,
+    }))
 }
 
 /// The cloud, and the volume (mm3) of all voxels of the bone.

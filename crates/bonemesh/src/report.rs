@@ -233,6 +233,9 @@ impl From<Topology> for CheckReport {
 }
 
 /// Looks at the topology of `mesh`; cheap enough for every mesh that is made.
-pub(crate) fn check(mesh: &TriangleMesh, task: &Task) -> Result<CheckReport, Error> {
+///
+/// # Errors
+/// [`Error::Mesh`] of a cancelled task.
+pub fn check(mesh: &TriangleMesh, task: &Task) -> Result<CheckReport, Error> {
     Ok(check_topology(mesh, task)?.into())
 }

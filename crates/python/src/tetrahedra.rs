@@ -65,7 +65,7 @@ pub(crate) fn alpha_surface(
     detached(py, watch, move |task| {
         bonemesh::pool(threads)?.install(|| {
             let surface = bonemesh::alpha_surface(&cloud, alpha_mm, task)?;
-            let topology = bonemesh::check(&surface.mesh, task)?;
+            let topology = bonemesh::check_topology(&surface.mesh, task)?;
             let mut report =
                 serde_json::to_value(&topology).expect("a plain report: anything else is a bug");
             report["alpha_mm"] = json!(alpha_mm);
