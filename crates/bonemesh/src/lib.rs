@@ -44,6 +44,7 @@ mod render;
 mod report;
 mod settings;
 mod source;
+mod table;
 mod thresholds;
 
 pub use after_care::{AfterCare, AfterCareReport, Cavities, care_for};
@@ -53,7 +54,7 @@ pub use panics::hush_foreign_panics;
 pub use picture::{check_picture_target, write_histogram};
 pub use region::{RegionRequest, RegionResult, select_roi};
 pub use render::{Rendered, mesh_cloud, point_cloud, render, render_volume};
-pub use report::{CheckReport, RegionReport, RenderReport, Seconds};
+pub use report::{CheckReport, RegionReport, RenderReport, Seconds, TableReport};
 pub use settings::{AlphaRule, Method, Sampling, Settings};
 pub use source::{Contents, Reading, Source};
 pub use thresholds::{

@@ -66,7 +66,7 @@ pub use error::MeshError;
 pub use intersections::{Intersection, Intersections, find_intersections};
 pub use io::{MeshFormat, check_target, read_mesh, write_mesh};
 pub use mesh::TriangleMesh;
-pub use parts::{Islands, Kept, RemovedPart, fill_cavities, keep_islands};
+pub use parts::{Island, Islands, Kept, RemovedPart, fill_cavities, keep_islands, take_islands};
 pub use smooth::{Smoothed, smooth};
 pub use thickness::{WallThickness, wall_thickness};
 pub use topology::{Topology, check_topology};

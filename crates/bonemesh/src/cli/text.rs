@@ -81,6 +81,13 @@ pub(super) fn rendered(report: &RenderReport, file: &Path) -> String {
         ));
     }
     line(format!("  {}", verdict(report.watertight, report.manifold)));
+    if let Some(left_out) = report.left_out_table {
+        line(format!(
+            "  left out what looks like the scanner's table: {:.2} cm3 in {} parts (--keep-table keeps it)",
+            left_out.volume_mm3 / MM3_PER_CM3,
+            left_out.parts
+        ));
+    }
     if let Some(report) = &report.after_care {
         text.push_str(&after_care(report));
     }

@@ -372,6 +372,7 @@ def render(
     depth: int = 8,
     scale: float = 1.1,
     true_edges: bool = True,
+    keep_table: bool = False,
     islands: Literal["largest"] | float | None = None,
     cavities: Literal["all"] | float | None = None,
     smooth_mm: float | None = None,
