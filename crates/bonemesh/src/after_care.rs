@@ -1,9 +1,10 @@
-//! What is done to a finished mesh: islands, cavities, smoothing, fewer triangles.
+//! What is done to a finished mesh: holes, islands, cavities, smoothing, fewer triangles.
 
 use std::time::Instant;
 
 use bonemesh_mesh::{
-    Decimation, Islands, Kept, TriangleMesh, decimate, fill_cavities, keep_islands, smooth,
+    Decimation, HoleLeft, HoleLimits, HoleReason, HolesFilled, Islands, Kept, TriangleMesh,
+    decimate, fill_cavities, fill_holes, keep_islands, smooth,
 };
 use bonemesh_task::Task;
 use serde::Serialize;
@@ -21,9 +22,20 @@ pub enum Cavities {
     AtMostMm3(f64),
 }
 
+/// Which holes are filled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Holes {
+    /// All.
+    All,
+    /// Those whose box along the axes has no side longer than this (mm).
+    AtMostMm(f64),
+}
+
 /// What is done to a finished mesh, in the order of the fields; by default nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct AfterCare {
+    /// Which holes are filled; `None` fills none.
+    pub holes: Option<Holes>,
     /// Which islands are kept; `None` keeps all.
     pub islands: Option<Islands>,
     /// Which cavities are filled; `None` fills none.
@@ -35,8 +47,14 @@ pub struct AfterCare {
 }
 
 /// What [`care_for`] did.
-#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize)]
 pub struct AfterCareReport {
+    /// Holes filled; `None` if none were to be.
+    pub filled_holes: Option<usize>,
+    /// Holes that are still there after filling.
+    pub left_holes: Option<usize>,
+    /// The largest of them, at most [`MOST_NAMED`].
+    pub largest_left_holes: Vec<LeftHole>,
     /// Islands taken away.
     pub removed_islands: usize,
     /// Their volume, cavities counted in.
@@ -56,6 +74,40 @@ pub struct AfterCareReport {
     pub held_vertices: Option<usize>,
     /// Seconds that it took.
     pub seconds: f64,
+}
+
+/// Holes that a report names one by one.
+pub const MOST_NAMED: usize = 20;
+
+/// A hole that is still there.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LeftHole {
+    /// How many edges its rim has.
+    pub edges: usize,
+    /// The longest side of its box along the axes.
+    pub extent_mm: f64,
+    /// The middle of that box.
+    pub place_mm: [f64; 3],
+    /// Why it is still there, in a few words.
+    pub reason: &'static str,
+}
+
+impl From<&HoleLeft> for LeftHole {
+    fn from(left: &HoleLeft) -> Self {
+        Self {
+            edges: left.edges,
+            extent_mm: left.extent_mm,
+            place_mm: left.place_mm,
+            reason: match left.reason {
+                HoleReason::TooLarge => "larger than asked for",
+                HoleReason::NoLoop => {
+                    "its rim is no closed loop: triangles are turned over or the edge is non-manifold"
+                }
+                HoleReason::Blocked => "the surface is in the way",
+                _ => "it cannot be filled",
+            },
+        }
+    }
 }
 
 impl AfterCare {
@@ -78,6 +130,16 @@ pub fn care_for(
     let clock = Instant::now();
     let mut report = AfterCareReport::default();
     let mut mesh = mesh;
+    if let Some(holes) = care.holes {
+        let limits = HoleLimits {
+            at_most_mm: match holes {
+                Holes::All => None,
+                Holes::AtMostMm(most) => Some(most),
+            },
+            at_most_edges: None,
+        };
+        mesh = report.with_lids(fill_holes(&mesh, limits, task)?);
+    }
     if let Some(islands) = care.islands {
         let had_triangles = !mesh.triangles().is_empty();
         let kept = keep_islands(&mesh, islands, task)?;
@@ -112,6 +174,19 @@ pub fn care_for(
 }
 
 impl AfterCareReport {
+    /// Notes which holes are filled and gives the mesh without them.
+    fn with_lids(&mut self, filled: HolesFilled) -> TriangleMesh {
+        self.filled_holes = Some(filled.filled);
+        self.left_holes = Some(filled.left.len());
+        self.largest_left_holes = filled
+            .left
+            .iter()
+            .take(MOST_NAMED)
+            .map(LeftHole::from)
+            .collect();
+        filled.mesh
+    }
+
     /// Notes what is gone and gives what is left.
     fn without(&mut self, kept: Kept) -> TriangleMesh {
         for part in &kept.removed {
@@ -169,6 +244,20 @@ pub(crate) fn cavities(text: &str) -> Result<Cavities, String> {
     match text {
         "all" => Ok(Cavities::All),
         _ => volume(text, "all").map(Cavities::AtMostMm3),
+    }
+}
+
+/// `all`, or a length in mm.
+///
+/// # Errors
+/// One line that says what to write instead.
+pub(crate) fn holes(text: &str) -> Result<Holes, String> {
+    match text.parse() {
+        _ if text == "all" => Ok(Holes::All),
+        Ok(most) if (0.0..=f64::MAX).contains(&most) => Ok(Holes::AtMostMm(most)),
+        _ => Err(format!(
+            "`{text}` is no length; write a number of mm, or `all`"
+        )),
     }
 }
 
