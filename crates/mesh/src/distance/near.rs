@@ -59,14 +59,23 @@ impl<'a> Near<'a> {
         )
     }
 
+    /// Whether the box of any triangle comes within the distance of the points' box.
+    pub(crate) fn reaches(&mut self, points: &[Vector]) -> bool {
+        self.look_around(points);
+        !self.nearby.is_empty()
+    }
+
     /// Finds the triangles whose boxes come within the distance of the points' box.
     fn look_around(&mut self, points: &[Vector]) {
         self.nearby.clear();
-        let grown = points.iter().flat_map(|point| {
-            [-self.distance_mm, self.distance_mm].map(|by| point.map(|value| value + by))
-        });
-        let grown: Vec<Vector> = grown.collect();
-        let bounds = Bounds::of(&grown);
+        let extreme = |axis: usize, pick: fn(f64, f64) -> f64, by: f64| {
+            let values = points.iter().map(|point| point[axis]);
+            values.reduce(pick).map_or(by, |value| value + by)
+        };
+        let bounds = Bounds::of(&[
+            [0, 1, 2].map(|axis| extreme(axis, f64::min, -self.distance_mm)),
+            [0, 1, 2].map(|axis| extreme(axis, f64::max, self.distance_mm)),
+        ]);
         self.stack.clear();
         if !self.tree.nodes().is_empty() {
             self.stack.push(0);
