@@ -32,7 +32,7 @@ const MOST_ROUNDS: usize = 8;
 /// A round that takes fewer triangles away than one in so many is the last.
 const WORTH: usize = 20;
 /// How much further than the mean a block goes, because others may have more to keep.
-const DEPTH: f64 = 0.4;
+const DEPTH: f64 = 0.6;
 
 impl Run<'_> {
     /// Collapses inside blocks, as far as the whole would surely go.

@@ -5,6 +5,8 @@ use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
 use crate::distance::Near;
+use crate::exact::{has_area, meet};
+use crate::tree::Bounds;
 use crate::vector::Vector;
 use crate::{MeshError, TriangleMesh, TriangleTree, find_intersections};
 
@@ -51,15 +53,24 @@ impl<'a> Comparison<'a> {
     ) -> Result<Vec<bool>, MeshError> {
         let mut is_faulty = vec![false; result.vertices_mm().len()];
         let tree = TriangleTree::new(result, task)?;
-        let found = find_intersections(&tree, usize::MAX, task)?;
-        let meeting = found.pairs.iter().flat_map(|pair| pair.triangles);
-        let mut faulty: Vec<u32> = meeting
-            .flat_map(|number| result.triangles()[number as usize])
-            .collect();
+        let before = self.before.as_ref();
+        let new = before.map(|before| only_in(result, before));
+        let mut faulty: Vec<u32> = if let Some(new) = &new {
+            meeting(&tree, new, task)?
+        } else {
+            let found = find_intersections(&tree, usize::MAX, task)?;
+            let triangles = found.pairs.iter().flat_map(|pair| pair.triangles);
+            let corners = triangles.flat_map(|number| result.triangles()[number as usize]);
+            corners.collect()
+        };
         if let Some((error_mm, given)) = &self.bound {
-            let (lost, new) = match &self.before {
-                Some(before) => (Some(only_in(before, result)?), only_in(result, before)?),
-                None => (None, result.clone()),
+            let lost = match &self.before {
+                Some(before) => Some(part(before, &only_in(before, result))?),
+                None => None,
+            };
+            let new = match &new {
+                Some(new) => part(result, new)?,
+                None => result.clone(),
             };
             let lost = match &lost {
                 Some(lost) => Some(TriangleTree::new(lost, task)?),
@@ -128,8 +139,33 @@ fn far_out(
     Ok(far.collect::<Result<Vec<_>, _>>()?.concat())
 }
 
-/// The triangles of one result that the other, with the same vertices in part at other places, has not.
-fn only_in(of: &TriangleMesh, other: &TriangleMesh) -> Result<TriangleMesh, MeshError> {
+/// Corners of triangles that meet, as far as one of the two is among the `new`.
+fn meeting(tree: &TriangleTree<'_>, new: &[u32], task: &Task) -> Result<Vec<u32>, Cancelled> {
+    let triangles = tree.mesh().triangles();
+    task.begin("intersections", new.len());
+    let found = new.par_chunks(STRIDE).map(|chunk| {
+        let (mut found, mut stack) = (Vec::new(), Vec::new());
+        for &number in chunk {
+            let corners = tree.mesh().corners_mm(triangles[number as usize]);
+            if !has_area(&corners) {
+                continue;
+            }
+            tree.visit_touching(&Bounds::of(&corners), &mut stack, |slot| {
+                if slot.triangle != number && meet(&corners, &tree.corners_mm(slot)) {
+                    found.extend(triangles[number as usize]);
+                    found.extend(triangles[slot.triangle as usize]);
+                }
+            });
+        }
+        task.advance(chunk.len())?;
+        Ok(found)
+    });
+    Ok(found.collect::<Result<Vec<_>, _>>()?.concat())
+}
+
+/// The numbers of the triangles of one result that the other, with the same vertices in part at other
+/// places, has not.
+fn only_in(of: &TriangleMesh, other: &TriangleMesh) -> Vec<u32> {
     let turned = |[a, b, c]: [u32; 3]| match a.min(b).min(c) {
         least if least == a => [a, b, c],
         least if least == b => [b, c, a],
@@ -137,12 +173,18 @@ fn only_in(of: &TriangleMesh, other: &TriangleMesh) -> Result<TriangleMesh, Mesh
     };
     let others = other.triangles().iter().map(|t| turned(*t));
     let others: FxHashSet<[u32; 3]> = others.collect();
-    let is_only = |triangle: &&[u32; 3]| {
-        !others.contains(&turned(**triangle))
-            || of.corners_mm(**triangle) != other.corners_mm(**triangle)
+    let is_only = |triangle: [u32; 3]| {
+        !others.contains(&turned(triangle)) || of.corners_mm(triangle) != other.corners_mm(triangle)
     };
-    let triangles: Vec<[u32; 3]> = of.triangles().iter().filter(is_only).copied().collect();
-    TriangleMesh::new(of.vertices_mm().to_vec(), triangles)
+    let numbered = (0..).zip(of.triangles());
+    let only = numbered.filter(|(_, triangle)| is_only(**triangle));
+    only.map(|(number, _)| number).collect()
+}
+
+/// Some triangles of a mesh, with all its vertices.
+fn part(of: &TriangleMesh, numbers: &[u32]) -> Result<TriangleMesh, MeshError> {
+    let triangles = numbers.iter().map(|n| of.triangles()[*n as usize]);
+    TriangleMesh::new(of.vertices_mm().to_vec(), triangles.collect())
 }
 
 /// Where a triangle of the result is held against the given mesh.
