@@ -111,6 +111,10 @@ pub struct Sampling {
 
 /// Everything a user can choose for one rendering.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(
+    clippy::struct_excessive_bools,
+    reason = "each is a choice of its own, named as the command line names it"
+)]
 pub struct Settings {
     /// Bone is strictly above this.
     pub threshold: HuThreshold,

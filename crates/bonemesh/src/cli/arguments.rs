@@ -49,7 +49,7 @@ pub(super) enum Command {
         /// Mesh file (.stl, .ply, .obj, .3mf).
         mesh: PathBuf,
     },
-    /// Care for a mesh: take islands away, fill cavities, smooth, take triangles away.
+    /// Care for a mesh: fill holes, take islands away, fill cavities, smooth, take triangles away.
     Repair(Repair),
     /// Write a phantom as a DICOM CT series, with its truth beside it.
     Phantom(PhantomArguments),
