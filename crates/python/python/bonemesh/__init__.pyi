@@ -358,7 +358,13 @@ def render(
     *,
     threshold_hu: float | _Threshold = ...,
     method: Literal[
-        "alpha", "isosurface", "labelled", "ball-pivoting", "poisson", "tetrahedra", "planar"
+        "alpha",
+        "isosurface",
+        "labelled",
+        "ball-pivoting",
+        "poisson",
+        "tetrahedra",
+        "planar",
     ]
     | None = None,
     sigma: float = 1.0,
