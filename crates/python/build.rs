@@ -32,7 +32,8 @@ const NOTICE_FILES: [&str; 7] = [
 ];
 
 fn main() -> Result<()> {
-    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    // Asked when it runs: a cached build of this script may come from a checkout elsewhere.
+    let workspace = Path::new(&env::var("CARGO_MANIFEST_DIR")?).join("../..");
     println!("cargo::rerun-if-changed=build.rs");
     println!(
         "cargo::rerun-if-changed={}",

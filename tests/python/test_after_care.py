@@ -1,4 +1,4 @@
-"""What is done to finished meshes: islands, cavities, smoothing, fewer triangles."""
+"""What is done to finished meshes: holes, islands, cavities, smoothing, fewer triangles."""
 
 import bonemesh
 import numpy as np
@@ -23,6 +23,33 @@ def test_a_filled_shell_is_a_ball(shell: bonemesh.Mesh) -> None:
     assert len(bonemesh.fill_cavities(shell, cavities=0.0).triangles) == len(
         shell.triangles
     )
+
+
+def test_holes_are_filled_up_to_a_size(shell: bonemesh.Mesh) -> None:
+    ball = bonemesh.fill_cavities(shell)
+    middles = ball.vertices[ball.triangles].mean(axis=1)
+    middle = (middles.min(axis=0) + middles.max(axis=0)) / 2
+    right = middles - [middles[:, 0].max(), middle[1], middle[2]]
+    top = middles - [middle[0], middle[1], middles[:, 2].max()]
+    is_gone = (np.linalg.norm(right, axis=1) < 4) | (np.linalg.norm(top, axis=1) < 12)
+    torn = bonemesh.Mesh(ball.vertices, ball.triangles[~is_gone])
+    assert not is_printable(torn)
+    whole = bonemesh.fill_holes(torn)
+    assert (whole.report["filled_holes"], whole.report["left_holes"]) == (2, 0)
+    assert is_printable(whole)
+    kept = len(torn.triangles)
+    np.testing.assert_array_equal(whole.triangles[:kept], torn.triangles)
+    small = bonemesh.fill_holes(torn, holes=12.0)
+    assert (small.report["filled_holes"], small.report["left_holes"]) == (1, 1)
+    (left,) = small.report["largest_left_holes"]
+    assert left["extent_mm"] > 12 and left["reason"] == "larger than asked for"
+    assert left["place_mm"][:2] == pytest.approx(middle[:2], abs=2)
+
+
+@pytest.mark.parametrize("bad", ["every", -1.0, float("nan")])
+def test_what_is_no_size_of_holes_is_refused(shell: bonemesh.Mesh, bad: object) -> None:
+    with pytest.raises(bonemesh.BonemeshError):
+        bonemesh.fill_holes(shell, holes=bad)
 
 
 def test_an_island_stays_with_its_cavity(shell: bonemesh.Mesh) -> None:
@@ -64,7 +91,7 @@ def test_decimation_stops_at_the_number_or_the_error(shell: bonemesh.Mesh) -> No
 def test_render_does_the_same(shell: bonemesh.Mesh) -> None:
     volume = bonemesh.phantom("sphere-shell", coarser=2.0)
     made = bonemesh.render(
-        volume, method="isosurface", cavities="all", smooth_mm=0.1, triangles=2000
+        volume, method="isosurface", holes="all", cavities="all", smooth_mm=0.1, triangles=2000
     )
     apart = bonemesh.decimate(
         bonemesh.smooth(bonemesh.fill_cavities(shell), tolerance_mm=0.1), triangles=2000

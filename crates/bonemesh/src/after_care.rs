@@ -1,9 +1,10 @@
-//! What is done to a finished mesh: islands, cavities, smoothing, fewer triangles.
+//! What is done to a finished mesh: holes, islands, cavities, smoothing, fewer triangles.
 
 use std::time::Instant;
 
 use bonemesh_mesh::{
-    Decimation, Islands, Kept, TriangleMesh, decimate, fill_cavities, keep_islands, smooth,
+    Decimation, HoleLeft, HoleLimits, HoleReason, HolesFilled, Islands, Kept, TriangleMesh,
+    decimate, fill_cavities, fill_holes, keep_islands, smooth,
 };
 use bonemesh_task::Task;
 use serde::Serialize;
@@ -21,9 +22,20 @@ pub enum Cavities {
     AtMostMm3(f64),
 }
 
+/// Which holes are filled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Holes {
+    /// All.
+    All,
+    /// Those whose box along the axes has no side longer than this (mm).
+    AtMostMm(f64),
+}
+
 /// What is done to a finished mesh, in the order of the fields; by default nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct AfterCare {
+    /// Which holes are filled; `None` fills none.
+    pub holes: Option<Holes>,
     /// Which islands are kept; `None` keeps all.
     pub islands: Option<Islands>,
     /// Which cavities are filled; `None` fills none.
@@ -35,8 +47,14 @@ pub struct AfterCare {
 }
 
 /// What [`care_for`] did.
-#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize)]
+#[derive(Clone, Debug, PartialEq, Default, Serialize)]
 pub struct AfterCareReport {
+    /// Holes filled; `None` if none were to be.
+    pub filled_holes: Option<usize>,
+    /// Holes that are still there after filling.
+    pub left_holes: Option<usize>,
+    /// The largest of them, at most [`MOST_NAMED`].
+    pub largest_left_holes: Vec<LeftHole>,
     /// Islands taken away.
     pub removed_islands: usize,
     /// Their volume, cavities counted in.
@@ -56,6 +74,40 @@ pub struct AfterCareReport {
     pub held_vertices: Option<usize>,
     /// Seconds that it took.
     pub seconds: f64,
+}
+
+/// Holes that a report names one by one.
+pub const MOST_NAMED: usize = 20;
+
+/// A hole that is still there.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LeftHole {
+    /// How many edges its rim has.
+    pub edges: usize,
+    /// The longest side of its box along the axes.
+    pub extent_mm: f64,
+    /// The middle of that box.
+    pub place_mm: [f64; 3],
+    /// Why it is still there, in a few words.
+    pub reason: &'static str,
+}
+
+impl From<&HoleLeft> for LeftHole {
+    fn from(left: &HoleLeft) -> Self {
+        Self {
+            edges: left.edges,
+            extent_mm: left.extent_mm,
+            place_mm: left.place_mm,
+            reason: match left.reason {
+                HoleReason::TooLarge => "larger than asked for",
+                HoleReason::NoLoop => {
+                    "its rim is no closed loop: triangles are turned over or the edge is non-manifold"
+                }
+                HoleReason::Blocked => "the surface is in the way",
+                _ => "it cannot be filled",
+            },
+        }
+    }
 }
 
 impl AfterCare {
@@ -78,6 +130,16 @@ pub fn care_for(
     let clock = Instant::now();
     let mut report = AfterCareReport::default();
     let mut mesh = mesh;
+    if let Some(holes) = care.holes {
+        let limits = HoleLimits {
+            at_most_mm: match holes {
+                Holes::All => None,
+                Holes::AtMostMm(most) => Some(most),
+            },
+            at_most_edges: None,
+        };
+        mesh = report.with_lids(fill_holes(&mesh, limits, task)?);
+    }
     if let Some(islands) = care.islands {
         let had_triangles = !mesh.triangles().is_empty();
         let kept = keep_islands(&mesh, islands, task)?;
@@ -112,6 +174,19 @@ pub fn care_for(
 }
 
 impl AfterCareReport {
+    /// Notes which holes are filled and gives the mesh without them.
+    fn with_lids(&mut self, filled: HolesFilled) -> TriangleMesh {
+        self.filled_holes = Some(filled.filled);
+        self.left_holes = Some(filled.left.len());
+        self.largest_left_holes = filled
+            .left
+            .iter()
+            .take(MOST_NAMED)
+            .map(LeftHole::from)
+            .collect();
+        filled.mesh
+    }
+
     /// Notes what is gone and gives what is left.
     fn without(&mut self, kept: Kept) -> TriangleMesh {
         for part in &kept.removed {
@@ -172,11 +247,76 @@ pub(crate) fn cavities(text: &str) -> Result<Cavities, String> {
     }
 }
 
+/// `all`, or a length in mm.
+///
+/// # Errors
+/// One line that says what to write instead.
+pub(crate) fn holes(text: &str) -> Result<Holes, String> {
+    match text.parse() {
+        _ if text == "all" => Ok(Holes::All),
+        Ok(most) if (0.0..=f64::MAX).contains(&most) => Ok(Holes::AtMostMm(most)),
+        _ => Err(format!(
+            "`{text}` is no length; write a number of mm, or `all`"
+        )),
+    }
+}
+
 fn volume(text: &str, word: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(value) if (0.0..=f64::MAX).contains(&value) => Ok(value),
         _ => Err(format!(
             "`{text}` is no volume; write a number of mm3, or `{word}`"
         )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A tetrahedron, 9 mm and 3 mm long, that lacks one side each.
+    fn open_tetrahedra() -> TriangleMesh {
+        let corners = |at: f64, size: f64| {
+            [
+                [at, 0.0, 0.0],
+                [at + size, 0.0, 0.0],
+                [at, size, 0.0],
+                [at, 0.0, size],
+            ]
+        };
+        let vertices = [corners(0.0, 9.0), corners(20.0, 3.0)].concat();
+        let sides = [[0, 2, 1], [0, 1, 3], [0, 3, 2]];
+        let triangles = [0, 4].map(|first| sides.map(|side| side.map(|v| v + first)));
+        TriangleMesh::new(vertices, triangles.concat()).expect("the numbers are those of vertices")
+    }
+
+    #[test]
+    fn holes_are_filled_up_to_a_length_and_the_report_names_the_others() {
+        for (text, filled) in [("all", 2), ("5", 1), ("0.5", 0)] {
+            let care = AfterCare {
+                holes: Some(holes(text).expect("it is a length")),
+                ..AfterCare::default()
+            };
+            let cared = care_for(open_tetrahedra(), &care, &Task::default());
+            let (mesh, report) = cared.expect("the length is one");
+            assert_eq!(mesh.triangles().len(), 6 + filled);
+            assert_eq!(report.filled_holes, Some(filled));
+            assert_eq!(report.left_holes, Some(2 - filled));
+            assert_eq!(report.largest_left_holes.len(), 2 - filled);
+            let reasons = report.largest_left_holes.iter().map(|left| left.reason);
+            assert!(
+                reasons
+                    .into_iter()
+                    .all(|why| why == "larger than asked for")
+            );
+        }
+    }
+
+    #[test]
+    fn what_is_no_length_of_holes_is_refused_with_a_remedy() {
+        for text in ["", "every", "-1", "nan", "inf"] {
+            let message = holes(text).expect_err("it is no length");
+            assert!(message.contains("or `all`"), "{message}");
+        }
     }
 }

@@ -44,16 +44,19 @@ mod render;
 mod report;
 mod settings;
 mod source;
+mod table;
 mod thresholds;
 
-pub use after_care::{AfterCare, AfterCareReport, Cavities, care_for};
+pub use after_care::{AfterCare, AfterCareReport, Cavities, Holes, LeftHole, MOST_NAMED, care_for};
 pub use check::{Place, PrintCheck, check, wall_thickness};
 pub use error::Error;
 pub use panics::hush_foreign_panics;
 pub use picture::{check_picture_target, write_histogram};
 pub use region::{RegionRequest, RegionResult, select_roi};
 pub use render::{Rendered, mesh_cloud, point_cloud, render, render_volume};
-pub use report::{CheckReport, RegionReport, RenderReport, Seconds, check as check_topology};
+pub use report::{
+    CheckReport, RegionReport, RenderReport, Seconds, TableReport, check as check_topology,
+};
 pub use settings::{AlphaRule, Method, Sampling, Settings};
 pub use source::{Contents, Reading, Source};
 pub use thresholds::{
@@ -68,9 +71,10 @@ pub use bonemesh_cloud::{
 pub use bonemesh_delaunay::{DelaunayError, Points, Tetrahedra, tetrahedralize};
 pub use bonemesh_dicom::{DicomError, Gap, LeftOut, SeriesChoice, SeriesReport};
 pub use bonemesh_mesh::{
-    Decimated, Decimation, Intersection, Intersections, Islands, Kept, MeshError, RemovedPart,
-    Smoothed, TriangleMesh, TriangleTree, check_target, decimate, fill_cavities,
-    find_intersections, keep_islands, read_mesh, smooth, write_mesh,
+    Decimated, Decimation, HoleLeft, HoleLimits, HoleReason, HolesFilled, Intersection,
+    Intersections, Islands, Kept, MeshError, RemovedPart, Smoothed, TriangleMesh, TriangleTree,
+    check_target, decimate, fill_cavities, fill_holes, find_intersections, keep_islands, read_mesh,
+    smooth, write_mesh,
 };
 pub use bonemesh_phantom::{
     Phantom, PhantomError, ScanSettings, WrittenPhantom, model_images, scan as scan_phantom,

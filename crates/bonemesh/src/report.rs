@@ -1,6 +1,6 @@
 //! What is said of a result: plain values with units in their names, ready for JSON.
 
-use bonemesh_mesh::{Topology, TriangleMesh, check_topology};
+use bonemesh_mesh::{RemovedPart, Topology, TriangleMesh, check_topology};
 use bonemesh_roi::Region;
 use bonemesh_task::Task;
 use serde::Serialize;
@@ -28,6 +28,31 @@ pub struct Seconds {
     pub write: f64,
     /// All of them.
     pub total: f64,
+}
+
+/// What a mesh is made without.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TableReport {
+    /// How many parts that do not touch.
+    pub parts: usize,
+    /// Their volume, cavities taken off.
+    pub volume_mm3: f64,
+}
+
+impl TableReport {
+    pub(crate) fn of(removed: &[RemovedPart]) -> Self {
+        let signed = |part: &RemovedPart| {
+            if part.is_cavity {
+                -part.volume_mm3
+            } else {
+                part.volume_mm3
+            }
+        };
+        Self {
+            parts: removed.len(),
+            volume_mm3: removed.iter().map(signed).sum(),
+        }
+    }
 }
 
 /// What is said of a rendered mesh.
@@ -73,6 +98,8 @@ pub struct RenderReport {
     pub filled_mm3: Option<f64>,
     /// Volume inside the mesh; with alpha it goes through the centres of the edge pixels.
     pub volume_mm3: f64,
+    /// Islands that look like the scanner's table or headrest; `None` if there are none.
+    pub left_out_table: Option<TableReport>,
     /// What was done to the finished mesh; `None` if nothing was asked for.
     pub after_care: Option<AfterCareReport>,
     /// Seconds of each step.
@@ -106,6 +133,7 @@ impl RenderReport {
             components: check.components,
             filled_mm3: None,
             volume_mm3: check.volume_mm3,
+            left_out_table: None,
             after_care: None,
             seconds,
             peak_mib: peak_mib(),

@@ -111,6 +111,10 @@ pub struct Sampling {
 
 /// Everything a user can choose for one rendering.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(
+    clippy::struct_excessive_bools,
+    reason = "each is a choice of its own, named as the command line names it"
+)]
 pub struct Settings {
     /// Bone is strictly above this.
     pub threshold: HuThreshold,
@@ -135,6 +139,9 @@ pub struct Settings {
     /// Places an isosurface or labelled tetrahedra at the true edges of the bone; otherwise where
     /// the grey equals the threshold.
     pub true_edges: bool,
+    /// Leaves the scanner's table and headrest out of an isosurface or labelled tetrahedra, where
+    /// they touch no bone.
+    pub leave_out_table: bool,
     /// Part of the volume to use; `None` uses all of it.
     pub crop: Option<CropBox>,
     /// Which series of the folder; `None` takes the only plausible one.
@@ -165,6 +172,7 @@ impl Default for Settings {
             depth: PoissonSettings::default().depth,
             scale: PoissonSettings::default().scale,
             true_edges: true,
+            leave_out_table: true,
             crop: None,
             series: None,
             one_series: false,

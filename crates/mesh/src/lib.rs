@@ -5,10 +5,11 @@
 //! through, overlap or touch one another; [`wall_thickness`] measures through the body.
 //! [`keep_islands`], [`fill_cavities`], [`smooth`] and [`decimate`] give a new mesh: what was a closed
 //! 2-manifold that passes through itself nowhere still is one, with the coordinates that a file holds.
+//! [`fill_holes`] closes what is open.
 //!
 //! Limits: files hold 32-bit floats, so a mesh comes back rounded to them (about 0.00002 mm at
-//! 200 mm from the origin). Only STL, PLY, OBJ and 3MF are read and written. Holes are
-//! not filled; triangles with two equal corners or no area are kept, and [`check_topology`] counts them.
+//! 200 mm from the origin). Only STL, PLY, OBJ and 3MF are read and written.
+//! Triangles with two equal corners or no area are kept, and [`check_topology`] counts them.
 //!
 //! ```
 //! use bonemesh_mesh::{
@@ -43,12 +44,14 @@
 //! feature extraction for 2D/3D objects in mesh representation* (2001). Decimation: Garland and
 //! Heckbert, *Surface simplification using quadric error metrics* (1997); link condition: Dey,
 //! Edelsbrunner, Guha and Nekhayev, *Topology preserving edge contraction* (1999). Smoothing: Taubin,
-//! *A signal processing approach to fair surface design* (1995).
+//! *A signal processing approach to fair surface design* (1995). Holes: Barequet and Sharir, *Filling gaps
+//! in the boundary of a polyhedron* (1995); Liepa, *Filling holes in meshes* (2003).
 
 mod decimate;
 mod distance;
 mod error;
 mod exact;
+mod holes;
 mod intersections;
 mod io;
 mod merge;
@@ -63,10 +66,11 @@ mod vector;
 
 pub use decimate::{Decimated, Decimation, decimate};
 pub use error::MeshError;
+pub use holes::{HoleLeft, HoleLimits, HoleReason, HolesFilled, fill_holes};
 pub use intersections::{Intersection, Intersections, find_intersections};
 pub use io::{MeshFormat, check_target, read_mesh, write_mesh};
 pub use mesh::TriangleMesh;
-pub use parts::{Islands, Kept, RemovedPart, fill_cavities, keep_islands};
+pub use parts::{Island, Islands, Kept, RemovedPart, fill_cavities, keep_islands, take_islands};
 pub use smooth::{Smoothed, smooth};
 pub use thickness::{WallThickness, wall_thickness};
 pub use topology::{Topology, check_topology};

@@ -167,6 +167,25 @@ fn a_torus_keeps_its_hole_its_volume_and_the_number_asked_for() {
 }
 
 #[test]
+fn a_large_mesh_is_done_in_blocks_with_the_same_promises_for_any_number_of_threads() {
+    let given = bumpy(300, 200, 0.003, 0.7).as_written().unwrap();
+    let before = topology(&given);
+    let goals = [to_triangles(20_000), to_triangles(3000), within_error(0.02)];
+    for goal in goals {
+        let all = [1, 3].map(|threads| {
+            let threads = pool(NonZeroUsize::new(threads)).unwrap();
+            threads.install(|| decimated(&given, goal))
+        });
+        assert_eq!(all[0], all[1]);
+        assert_sound(&before, &all[0]);
+        let triangles = all[0].triangles().len();
+        assert!(triangles <= goal.triangles.unwrap_or(60_000), "{triangles}");
+        let change = topology(&all[0]).volume_mm3 / before.volume_mm3 - 1.0;
+        assert!(change.abs() < 0.004, "{triangles}: {change}");
+    }
+}
+
+#[test]
 fn a_box_of_many_triangles_becomes_one_of_twelve_with_the_same_corners() {
     let given = cubes(8, |_| true);
     let result = decimated(&given, within_error(1e-3));

@@ -1,6 +1,6 @@
-//! What is done to finished meshes: islands, cavities, smoothing, fewer triangles.
+//! What is done to finished meshes: holes, islands, cavities, smoothing, fewer triangles.
 
-use bonemesh::{AfterCare, Cavities, Decimation, Islands};
+use bonemesh::{AfterCare, Cavities, Decimation, Holes, Islands};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
@@ -17,11 +17,15 @@ pub(crate) struct Kept(pub(crate) Islands);
 #[derive(Clone, Copy)]
 pub(crate) struct Filled(pub(crate) Cavities);
 
+/// Which holes are filled: "all", or the longest extent in mm.
+#[derive(Clone, Copy)]
+pub(crate) struct Closed(pub(crate) Holes);
+
 impl FromPyObject<'_, '_> for Kept {
     type Error = PyErr;
 
     fn extract(value: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
-        let mm3 = word_or_volume(value, "largest", "islands")?;
+        let mm3 = word_or_number(value, "largest", "islands", "volume in mm3")?;
         Ok(Self(mm3.map_or(Islands::Largest, Islands::AtLeastMm3)))
     }
 }
@@ -30,13 +34,27 @@ impl FromPyObject<'_, '_> for Filled {
     type Error = PyErr;
 
     fn extract(value: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
-        let mm3 = word_or_volume(value, "all", "cavities")?;
+        let mm3 = word_or_number(value, "all", "cavities", "volume in mm3")?;
         Ok(Self(mm3.map_or(Cavities::All, Cavities::AtMostMm3)))
     }
 }
 
-/// A volume, or `None` for the word.
-fn word_or_volume(value: Borrowed<'_, '_, PyAny>, word: &str, name: &str) -> PyResult<Option<f64>> {
+impl FromPyObject<'_, '_> for Closed {
+    type Error = PyErr;
+
+    fn extract(value: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+        let mm = word_or_number(value, "all", "holes", "length in mm")?;
+        Ok(Self(mm.map_or(Holes::All, Holes::AtMostMm)))
+    }
+}
+
+/// A number, or `None` for the word.
+fn word_or_number(
+    value: Borrowed<'_, '_, PyAny>,
+    word: &str,
+    name: &str,
+    unit: &str,
+) -> PyResult<Option<f64>> {
     if !value.is_instance_of::<PyString>() {
         return value.extract().map(Some);
     }
@@ -44,7 +62,7 @@ fn word_or_volume(value: Borrowed<'_, '_, PyAny>, word: &str, name: &str) -> PyR
     if text == word {
         return Ok(None);
     }
-    let message = format!("{name} is '{text}'; give \"{word}\" or a volume in mm3");
+    let message = format!("{name} is '{text}'; give \"{word}\" or a {unit}");
     Err(errors::argument(value.py(), &message))
 }
 
@@ -62,6 +80,24 @@ fn cared_for(
         let (mesh, report) = bonemesh::care_for(parts.mesh()?, &care, task)?;
         Mesh::of(mesh, &report)
     })
+}
+
+/// Fill "all" holes of an open mesh, or those no longer than a length in mm, with triangles over their
+/// rims. A hole that cannot be filled soundly stays: `report["largest_left_holes"]` says where and why.
+#[pyfunction]
+#[pyo3(signature = (mesh, *, holes=Closed(Holes::All), progress=None, cancel=None))]
+pub(crate) fn fill_holes(
+    py: Python<'_>,
+    mesh: &Mesh,
+    holes: Closed,
+    progress: Option<Py<PyAny>>,
+    cancel: Option<&Cancel>,
+) -> PyResult<Mesh> {
+    let care = AfterCare {
+        holes: Some(holes.0),
+        ..AfterCare::default()
+    };
+    cared_for(py, mesh, care, progress, cancel)
 }
 
 /// Keep the "largest" island, or all of at least a volume in mm3, each with its cavities.

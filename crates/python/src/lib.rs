@@ -39,7 +39,7 @@ mod _native {
     use super::{Bound, PyModule, PyModuleMethods, PyResult};
 
     #[pymodule_export]
-    use crate::after_care::{decimate, fill_cavities, keep_islands, smooth};
+    use crate::after_care::{decimate, fill_cavities, fill_holes, keep_islands, smooth};
     #[pymodule_export]
     use crate::cancel::Cancel;
     #[pymodule_export]

@@ -9,7 +9,7 @@ use bonemesh::{
 };
 use pyo3::prelude::*;
 
-use crate::after_care::{Filled, Kept};
+use crate::after_care::{Closed, Filled, Kept};
 use crate::cancel::Cancel;
 use crate::detach::{Watch, detached};
 use crate::errors;
@@ -52,6 +52,9 @@ pub(crate) fn methods() -> Vec<&'static str> {
 ///   large as the points.
 /// - `true_edges`: an isosurface or labelled one lies at the true edges of the bone, else where
 ///   the grey equals the threshold.
+/// - `keep_table`: keeps the scanner's table and headrest, which an isosurface and a labelled one
+///   leave out where they touch no bone (`report["left_out_table"]`).
+/// - `holes`: "all", or the longest extent (mm) of the holes filled; None fills none.
 /// - `islands`: "largest", or the least volume (mm3) of the islands kept; None keeps all.
 /// - `cavities`: "all", or the largest volume (mm3) of the cavities filled; None fills none.
 /// - `smooth_mm`: smooth and move no vertex further than this; None does not smooth.
@@ -65,7 +68,7 @@ pub(crate) fn methods() -> Vec<&'static str> {
 #[pyfunction]
 #[pyo3(signature = (
     path_or_volume, *, threshold_hu=Threshold::skull(), method=None, sigma=1.0, series=None,
-    one_series=false, crop=None, sample_percent=None, sampler="uniform", seed=0, alpha_mm=None, radii_mm=None, depth=8, scale=1.1, true_edges=true, islands=None,
+    one_series=false, crop=None, sample_percent=None, sampler="uniform", seed=0, alpha_mm=None, radii_mm=None, depth=8, scale=1.1, true_edges=true, keep_table=false, holes=None, islands=None,
     cavities=None, smooth_mm=None, triangles=None, decimate_mm=None, threads=None, progress=None,
     cancel=None
 ))]
@@ -87,6 +90,8 @@ pub(crate) fn render(
     depth: i128,
     scale: f64,
     true_edges: bool,
+    keep_table: bool,
+    holes: Option<Closed>,
     islands: Option<Kept>,
     cavities: Option<Filled>,
     smooth_mm: Option<f64>,
@@ -112,10 +117,12 @@ pub(crate) fn render(
         depth: options::depth(py, depth)?,
         scale,
         true_edges,
+        leave_out_table: !keep_table,
         crop: crop.map(|c| c.0),
         series: series.map(|s| s.0),
         one_series,
         after_care: AfterCare {
+            holes: holes.map(|h| h.0),
             islands: islands.map(|i| i.0),
             cavities: cavities.map(|c| c.0),
             smooth_mm,

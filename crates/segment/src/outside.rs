@@ -1,5 +1,7 @@
 //! The air around whatever was scanned.
 
+use std::ops::Range;
+
 use bonemesh_task::{Cancelled, Task};
 use bonemesh_volume::{Volume, Voxels};
 use ndarray::parallel::prelude::*;
@@ -46,31 +48,89 @@ fn each_slice<T: Copy + Sync + Into<f32>>(
     Ok(outside)
 }
 
-/// What air reaches from the border of a slice: a flood over neighbours in rows and columns.
+/// What air reaches from the border of a slice: runs of air in rows, joined where they touch.
 fn reached<T: Copy + Into<f32>>(hu: &ArrayView2<'_, T>) -> Array2<bool> {
     let (rows, columns) = hu.dim();
-    let mut reached = Array2::from_elem((rows, columns), false);
-    let mut front = Vec::new();
-    let mut reach = |at: [usize; 2], front: &mut Vec<[usize; 2]>| {
-        if !reached[at] && hu[at].into() < AIR_HU {
-            reached[at] = true;
-            front.push(at);
+    let mut runs = Runs::default();
+    let mut above = 0..0;
+    for (row, values) in hu.rows().into_iter().enumerate() {
+        let first = runs.known.len();
+        let mut start = None;
+        for (column, &value) in values.iter().enumerate() {
+            let is_air = value.into() < AIR_HU;
+            match start {
+                None if is_air => start = Some(column),
+                Some(from) if !is_air => {
+                    runs.add(row, from..column);
+                    start = None;
+                }
+                _ => {}
+            }
         }
+        if let Some(from) = start {
+            runs.add(row, from..columns);
+        }
+        let here = first..runs.known.len();
+        runs.join_touching(above, here.clone());
+        above = here;
+    }
+    let is_outermost = |(row, run): &(usize, Range<usize>)| {
+        *row == 0 || *row + 1 == rows || run.start == 0 || run.end == columns
     };
-    for row in 0..rows {
-        for column in 0..columns {
-            if row == 0 || column == 0 || row + 1 == rows || column + 1 == columns {
-                reach([row, column], &mut front);
+    let mut is_outside = vec![false; runs.known.len()];
+    for number in 0..runs.known.len() {
+        let set = runs.set(number);
+        is_outside[set] |= is_outermost(&runs.known[number]);
+    }
+    let mut reached = Array2::from_elem((rows, columns), false);
+    for number in 0..runs.known.len() {
+        if is_outside[runs.set(number)] {
+            let (row, run) = runs.known[number].clone();
+            let pixels = run.map(|column| [row, column]);
+            pixels.for_each(|at| reached[at] = true);
+        }
+    }
+    reached
+}
+
+/// Runs of air, each in a row, and sets of those that touch.
+#[derive(Default)]
+struct Runs {
+    known: Vec<(usize, Range<usize>)>,
+    /// An earlier run of the same set, or the run itself.
+    earlier: Vec<usize>,
+}
+
+impl Runs {
+    fn add(&mut self, row: usize, run: Range<usize>) {
+        self.earlier.push(self.known.len());
+        self.known.push((row, run));
+    }
+
+    /// The first run of a run's set.
+    fn set(&mut self, mut run: usize) -> usize {
+        while self.earlier[run] != run {
+            self.earlier[run] = self.earlier[self.earlier[run]];
+            run = self.earlier[run];
+        }
+        run
+    }
+
+    /// Joins the runs of two neighbouring rows.
+    fn join_touching(&mut self, mut above: Range<usize>, mut below: Range<usize>) {
+        while !above.is_empty() && !below.is_empty() {
+            let [a, b] = [above.start, below.start].map(|run| self.known[run].1.clone());
+            if a.start < b.end && b.start < a.end {
+                let [x, y] = [self.set(above.start), self.set(below.start)];
+                self.earlier[x.max(y)] = x.min(y);
+            }
+            if a.end <= b.end {
+                above.start += 1;
+            } else {
+                below.start += 1;
             }
         }
     }
-    while let Some([row, column]) = front.pop() {
-        reach([row.saturating_sub(1), column], &mut front);
-        reach([(row + 1).min(rows - 1), column], &mut front);
-        reach([row, column.saturating_sub(1)], &mut front);
-        reach([row, (column + 1).min(columns - 1)], &mut front);
-    }
-    reached
 }
 
 #[cfg(test)]

@@ -11,10 +11,13 @@ use super::arguments::{length_mm, mesh_file};
 use super::output::Answer;
 use super::text;
 use crate::Error;
-use crate::after_care::{self, AfterCare, Cavities, care_for};
+use crate::after_care::{self, AfterCare, Cavities, Holes, care_for};
 
 #[derive(Debug, Args)]
 pub(super) struct AfterCareArguments {
+    /// Fill `all` holes of an open mesh, or those that are no longer than this.
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = after_care::holes)]
+    fill_holes: Option<Holes>,
     /// Keep only the `largest` island of the mesh, or all of at least this volume.
     #[arg(long, value_name = "MM3", allow_negative_numbers = true, value_parser = after_care::islands)]
     islands: Option<Islands>,
@@ -35,6 +38,7 @@ pub(super) struct AfterCareArguments {
 impl AfterCareArguments {
     pub(super) fn settings(&self) -> AfterCare {
         AfterCare {
+            holes: self.fill_holes,
             islands: self.islands,
             cavities: self.fill_cavities,
             smooth_mm: self.smooth,

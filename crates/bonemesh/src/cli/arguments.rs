@@ -49,7 +49,7 @@ pub(super) enum Command {
         /// Mesh file (.stl, .ply, .obj, .3mf).
         mesh: PathBuf,
     },
-    /// Care for a mesh: take islands away, fill cavities, smooth, take triangles away.
+    /// Care for a mesh: fill holes, take islands away, fill cavities, smooth, take triangles away.
     Repair(Repair),
     /// Write a phantom as a DICOM CT series, with its truth beside it.
     Phantom(PhantomArguments),
@@ -122,6 +122,9 @@ pub(super) struct SurfaceArguments {
     /// edges of the bone.
     #[arg(long)]
     at_threshold: bool,
+    /// Keeps the scanner's table and headrest in an isosurface or a labelled one.
+    #[arg(long)]
+    keep_table: bool,
     #[command(flatten)]
     after_care: AfterCareArguments,
 }
@@ -392,6 +395,7 @@ impl SurfaceArguments {
             alpha_mm,
             alpha_rule,
             true_edges: !self.at_threshold,
+            leave_out_table: !self.keep_table,
             after_care: self.after_care.settings(),
             ..Settings::default()
         })

@@ -81,6 +81,13 @@ pub(super) fn rendered(report: &RenderReport, file: &Path) -> String {
         ));
     }
     line(format!("  {}", verdict(report.watertight, report.manifold)));
+    if let Some(left_out) = report.left_out_table {
+        line(format!(
+            "  left out what looks like the scanner's table: {:.2} cm3 in {} parts (--keep-table keeps it)",
+            left_out.volume_mm3 / MM3_PER_CM3,
+            left_out.parts
+        ));
+    }
     if let Some(report) = &report.after_care {
         text.push_str(&after_care(report));
     }
@@ -102,9 +109,24 @@ pub(super) fn rendered(report: &RenderReport, file: &Path) -> String {
     text
 }
 
+/// Holes left that the text names; the report has more of them.
+const HOLES_SHOWN: usize = 5;
+
 /// What was done to a finished mesh, a line each.
 pub(super) fn after_care(report: &AfterCareReport) -> String {
     let mut text = String::new();
+    if let (Some(filled), Some(left)) = (report.filled_holes, report.left_holes) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "  {filled} holes filled, {left} left");
+        for hole in report.largest_left_holes.iter().take(HOLES_SHOWN) {
+            let [x, y, z] = hole.place_mm;
+            let _ = writeln!(
+                text,
+                "    left: {:.1} mm, {} edges, at {x:.1} {y:.1} {z:.1}: {}",
+                hole.extent_mm, hole.edges, hole.reason
+            );
+        }
+    }
     let parts = [
         (
             "islands taken away",

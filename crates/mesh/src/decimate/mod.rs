@@ -9,9 +9,10 @@
 //!    What the vertices of those stand for is held with all its triangles, and the same is done
 //!    again (`Run::repeat`), until there are none. Each time more is held, so it comes to an end.
 //!
-//! Only the edges' costs and the faults are found in parallel; collapsing is one thing after
-//! another, because each changes what may be done next to it.
+//! Collapsing is one thing after another, because each changes what may be done next to it; but what
+//! is far apart can be done side by side, and most of a large mesh is (`blocks`).
 
+mod blocks;
 mod collapse;
 mod faults;
 mod quadric;
@@ -81,21 +82,24 @@ pub fn decimate(
     let stars = || Stars::new(given.vertices_mm().len(), given.triangles());
     let mut holds = holds(&stars(), task)?;
     let mut steps = Vec::new();
+    let mut comparison = Comparison::new(&given, goal.error_mm, task)?;
     let mut held_vertices = 0;
-    loop {
+    for round in 0.. {
         task.begin("decimate", triangles.saturating_sub(end.triangles));
         let mut run = Run::new(&given, stars(), &holds, task)?;
-        run.repeat(&steps, task)?;
-        run.collapse(end, task)?;
+        if round == 0 {
+            run.collapse_in_blocks(end, task)?;
+            run.collapse(end, None, task)?;
+        } else {
+            let is_other = run.repeat(&steps, task)?;
+            // A number is reached wherever it costs least; an error bound, only beside what changed.
+            let at = (end.triangles == 0).then_some(&*is_other);
+            run.collapse(end, at, task)?;
+        }
         let standing = run.standing();
         steps = run.steps;
         let result = TriangleMesh::new(run.vertices_mm, run.stars.triangles().collect())?;
-        let comparison = Comparison {
-            given: &given,
-            result: &result,
-            standing: &standing,
-        };
-        let is_faulty = comparison.faulty_vertices(goal.error_mm, task)?;
+        let is_faulty = comparison.faulty_vertices(&result, &standing, task)?;
         let mut more = 0;
         for (hold, &stands) in holds.iter_mut().zip(&standing) {
             if is_faulty[stands as usize] && *hold != Hold::Star {
@@ -111,7 +115,9 @@ pub fn decimate(
                 held_vertices,
             });
         }
+        comparison.remember(result);
     }
+    unreachable!("each round holds more vertices, and there is an end to them: going on is a bug")
 }
 
 impl Decimation {

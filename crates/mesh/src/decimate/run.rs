@@ -35,9 +35,11 @@ pub(super) enum Hold {
 /// One collapse, as it was done.
 #[derive(Clone, Copy)]
 pub(super) struct Step {
-    kept: u32,
-    gone: u32,
-    place: Vector,
+    pub(super) kept: u32,
+    pub(super) gone: u32,
+    pub(super) place: Vector,
+    /// What it cost, as in its entry.
+    pub(super) cost: f32,
 }
 
 /// Where collapsing ends.
@@ -51,14 +53,14 @@ pub(super) struct End {
 
 /// A mesh on its way to fewer triangles.
 pub(super) struct Run<'a> {
-    holds: &'a [Hold],
+    pub(super) holds: &'a [Hold],
     /// What quadrics take as the origin, so that digits are not lost.
-    middle: Vector,
+    pub(super) middle: Vector,
     pub(super) vertices_mm: Vec<Vector>,
     pub(super) stars: Stars,
-    quadrics: Vec<Quadric>,
+    pub(super) quadrics: Vec<Quadric>,
     /// How often each vertex has changed.
-    versions: Vec<u32>,
+    pub(super) versions: Vec<u32>,
     pub(super) steps: Vec<Step>,
 }
 
@@ -98,8 +100,8 @@ impl<'a> Run<'a> {
     }
 
     /// Does the steps of an earlier run again, except where something is held now that was not
-    /// then, and where the surroundings therefore differ.
-    pub(super) fn repeat(&mut self, steps: &[Step], task: &Task) -> Result<(), Cancelled> {
+    /// then, and where the surroundings therefore differ. Gives the vertices for which that is so.
+    pub(super) fn repeat(&mut self, steps: &[Step], task: &Task) -> Result<Vec<bool>, Cancelled> {
         let mut is_other: Vec<bool> = self.holds.iter().map(|h| *h == Hold::Star).collect();
         let mut surroundings = Surroundings::default();
         for (number, &step) in steps.iter().enumerate() {
@@ -114,14 +116,20 @@ impl<'a> Run<'a> {
                 self.apply(step);
             }
         }
-        Ok(())
+        Ok(is_other)
     }
 
-    /// Collapses edges until the end is reached or none can be collapsed any more.
-    pub(super) fn collapse(&mut self, end: End, task: &Task) -> Result<(), Cancelled> {
+    /// Collapses edges until the end is reached or none can be collapsed any more; if `at` is given,
+    /// looks only at edges with one of those vertices.
+    pub(super) fn collapse(
+        &mut self,
+        end: End,
+        at: Option<&[bool]>,
+        task: &Task,
+    ) -> Result<(), Cancelled> {
         loop {
             let before = self.steps.len();
-            self.sweep(end, task)?;
+            self.sweep(end, at, task)?;
             // What was refused may be possible now; a last handful is not worth another sweep.
             let done = self.steps.len() - before;
             if self.stars.alive() <= end.triangles || done <= self.stars.alive() / 1000 {
@@ -131,8 +139,8 @@ impl<'a> Run<'a> {
     }
 
     /// Looks at each edge once, and again when one of its ends has changed.
-    fn sweep(&mut self, end: End, task: &Task) -> Result<(), Cancelled> {
-        let mut known = self.edges(end, task)?;
+    fn sweep(&mut self, end: End, at: Option<&[bool]>, task: &Task) -> Result<(), Cancelled> {
+        let mut known = self.edges(end, at, task)?;
         while !known.is_empty() && self.stars.alive() > end.triangles {
             // In tiers of rising cost, so that the heap stays small: the order is the same.
             let tier = known[known.len() / TIERS];
@@ -175,7 +183,7 @@ impl<'a> Run<'a> {
             if !self.is_current(entry) {
                 continue;
             }
-            let Some(step) = self.allowed(ends(entry), &mut surroundings) else {
+            let Some(step) = self.allowed(entry, &mut surroundings) else {
                 continue;
             };
             self.apply(step);
@@ -200,7 +208,7 @@ impl<'a> Run<'a> {
     }
 
     /// All edges that may be worth collapsing, the cheapest first.
-    fn edges(&self, end: End, task: &Task) -> Result<Vec<u128>, Cancelled> {
+    fn edges(&self, end: End, at: Option<&[bool]>, task: &Task) -> Result<Vec<u128>, Cancelled> {
         let triangles: Vec<[u32; 3]> = self.stars.triangles().collect();
         let chunks = triangles
             .par_chunks(STRIDE)
@@ -209,7 +217,8 @@ impl<'a> Run<'a> {
                     .iter()
                     .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
                 // Where both triangles of an edge face the same way, each runs along it once.
-                let edges = edges.filter(|[u, v]| u < v);
+                let is_asked = |v: u32| at.is_none_or(|at| at[v as usize]);
+                let edges = edges.filter(|&[u, v]| u < v && (is_asked(u) || is_asked(v)));
                 let entries: Vec<u128> = edges.filter_map(|[u, v]| self.entry(u, v, end)).collect();
                 task.check()?;
                 Ok(entries)
@@ -262,8 +271,10 @@ impl<'a> Run<'a> {
     }
 
     /// The collapse of an edge, if the surface stays sound.
-    fn allowed(&self, [u, v]: [u32; 2], surroundings: &mut Surroundings) -> Option<Step> {
+    fn allowed(&self, entry: u128, surroundings: &mut Surroundings) -> Option<Step> {
+        let [u, v] = ends(entry);
         let (place, _, _) = self.best(u, v)?;
+        let cost = f32::from_bits((entry >> 96) as u32);
         let (kept, gone) = match self.holds[v as usize] {
             Hold::Free => (u, v),
             _ => (v, u),
@@ -273,10 +284,15 @@ impl<'a> Run<'a> {
         (surroundings.keeps_topology(kept, gone)
             && !surroundings.around().any(is_held)
             && surroundings.keeps_shape(&self.vertices_mm, [kept, gone], place))
-        .then_some(Step { kept, gone, place })
+        .then_some(Step {
+            kept,
+            gone,
+            place,
+            cost,
+        })
     }
 
-    fn apply(&mut self, step: Step) {
+    pub(super) fn apply(&mut self, step: Step) {
         let [kept, gone] = [step.kept as usize, step.gone as usize];
         self.stars.collapse(step.kept, step.gone);
         self.quadrics[kept] = self.quadrics[kept].plus(&self.quadrics[gone]);

@@ -28,10 +28,8 @@ impl<'a> Near<'a> {
 
     /// Whether a point is within the distance.
     pub(crate) fn holds_point(&mut self, point: Vector) -> bool {
-        self.look_around(&[point]);
         let limit = self.distance_mm * self.distance_mm;
-        let mut nearby = self.nearby.iter();
-        nearby.any(|&corners| squared_distance(point, corners) <= limit)
+        self.look_around(&[point], |other| squared_distance(point, *other) <= limit)
     }
 
     /// Whether all points of a triangle are within the distance; a no may be wrong by a hair.
@@ -39,14 +37,13 @@ impl<'a> Near<'a> {
     /// The distance to one triangle is convex, so a piece whose corners are all near the same one is
     /// near it as a whole; a piece that lies over several is cut at their borders.
     pub(crate) fn holds_triangle(&mut self, corners: [Vector; 3]) -> bool {
-        self.look_around(&corners);
         let limit = self.distance_mm * self.distance_mm;
         let is_near = |other: &[Vector; 3]| {
             corners
                 .iter()
                 .all(|&corner| squared_distance(corner, *other) <= limit)
         };
-        if self.nearby.iter().any(is_near) {
+        if self.look_around(&corners, is_near) {
             return true;
         }
         let mut cuts = MOST_CUTS;
@@ -59,14 +56,23 @@ impl<'a> Near<'a> {
         )
     }
 
-    /// Finds the triangles whose boxes come within the distance of the points' box.
-    fn look_around(&mut self, points: &[Vector]) {
+    /// Whether the box of any triangle comes within the distance of the points' box.
+    pub(crate) fn reaches(&mut self, points: &[Vector]) -> bool {
+        self.look_around(points, |_| true)
+    }
+
+    /// Finds the triangles whose boxes come within the distance of the points' box, until one is
+    /// `enough`; says whether one was.
+    fn look_around(&mut self, points: &[Vector], enough: impl Fn(&[Vector; 3]) -> bool) -> bool {
         self.nearby.clear();
-        let grown = points.iter().flat_map(|point| {
-            [-self.distance_mm, self.distance_mm].map(|by| point.map(|value| value + by))
-        });
-        let grown: Vec<Vector> = grown.collect();
-        let bounds = Bounds::of(&grown);
+        let extreme = |axis: usize, pick: fn(f64, f64) -> f64, by: f64| {
+            let values = points.iter().map(|point| point[axis]);
+            values.reduce(pick).map_or(by, |value| value + by)
+        };
+        let bounds = Bounds::of(&[
+            [0, 1, 2].map(|axis| extreme(axis, f64::min, -self.distance_mm)),
+            [0, 1, 2].map(|axis| extreme(axis, f64::max, self.distance_mm)),
+        ]);
         self.stack.clear();
         if !self.tree.nodes().is_empty() {
             self.stack.push(0);
@@ -81,11 +87,15 @@ impl<'a> Near<'a> {
                 continue;
             }
             let slots = &self.tree.slots()[node.first as usize..node.end as usize];
-            let touching = slots.iter().filter(|slot| slot.bounds.touches(&bounds));
-            let tree = self.tree;
-            self.nearby
-                .extend(touching.map(|slot| tree.corners_mm(slot)));
+            for slot in slots.iter().filter(|slot| slot.bounds.touches(&bounds)) {
+                let corners = self.tree.corners_mm(slot);
+                if enough(&corners) {
+                    return true;
+                }
+                self.nearby.push(corners);
+            }
         }
+        false
     }
 }
 

@@ -100,6 +100,38 @@ impl Labels {
     }
 }
 
+/// The triangles of each part.
+pub(super) struct ByPart {
+    starts: Vec<usize>,
+    triangles: Vec<u32>,
+}
+
+impl ByPart {
+    pub(super) fn of(&self, part: usize) -> &[u32] {
+        &self.triangles[self.starts[part]..self.starts[part + 1]]
+    }
+}
+
+impl Labels {
+    /// Triangles in their order, part by part.
+    pub(super) fn triangles_of_parts(&self) -> ByPart {
+        let mut starts = vec![0; self.count + 1];
+        for &label in &self.of_triangles {
+            starts[label as usize + 1] += 1;
+        }
+        for part in 0..self.count {
+            starts[part + 1] += starts[part];
+        }
+        let mut next = starts.clone();
+        let mut triangles = vec![0; self.of_triangles.len()];
+        for (number, &label) in (0..).zip(&self.of_triangles) {
+            triangles[next[label as usize]] = number;
+            next[label as usize] += 1;
+        }
+        ByPart { starts, triangles }
+    }
+}
+
 /// A number for a triangle's three edges that cancels where another triangle runs along an edge the
 /// other way: over a part without rims all add up to 0, and over one with rims, but for a chance of
 /// one in 2^64, to something else.

@@ -9,7 +9,7 @@ mod label;
 
 use bonemesh_task::Task;
 
-use crate::{MeshError, TriangleMesh, TriangleTree};
+use crate::{MeshError, TriangleMesh};
 use label::{Labels, Part};
 
 /// Which islands [`keep_islands`] keeps.
@@ -89,6 +89,67 @@ pub fn keep_islands(mesh: &TriangleMesh, keep: Islands, task: &Task) -> Result<K
     parts.only(&is_kept)
 }
 
+/// An island, as [`take_islands`] shows it.
+pub struct Island<'a> {
+    /// Its own volume (mm3), below 0 if it faces inward; of an open one, a guess.
+    pub volume_mm3: f64,
+    mesh: &'a TriangleMesh,
+    triangles: &'a [u32],
+}
+
+impl Island<'_> {
+    /// How many triangles it has.
+    pub fn len(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Never: an island has triangles.
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
+    /// The corners (mm) of its triangles, one in `stride`.
+    pub fn triangles_mm(&self, stride: usize) -> impl Iterator<Item = [[f64; 3]; 3]> {
+        let numbers = self.triangles.iter().step_by(stride.max(1));
+        numbers.map(|&number| self.mesh.corners_mm(self.mesh.triangles()[number as usize]))
+    }
+}
+
+/// Takes away the islands that `are_taken` says, each with all that lies in it.
+///
+/// It is shown the islands and answers for each whether it goes. The result is the same for any
+/// number of threads.
+///
+/// # Errors
+/// [`MeshError::Cancelled`]
+pub fn take_islands(
+    mesh: &TriangleMesh,
+    are_taken: impl FnOnce(&[Island<'_>]) -> Vec<bool>,
+    task: &Task,
+) -> Result<Kept, MeshError> {
+    let parts = Parts::of(mesh, task)?;
+    let by_part = parts.labels.triangles_of_parts();
+    let numbers: Vec<usize> = (0..parts.known.len())
+        .filter(|&number| !parts.known[number].is_cavity)
+        .collect();
+    let islands: Vec<Island<'_>> = numbers
+        .iter()
+        .map(|&number| Island {
+            volume_mm3: parts.known[number].volume_mm3,
+            mesh,
+            triangles: by_part.of(number),
+        })
+        .collect();
+    let mut is_taken = vec![false; parts.known.len()];
+    for (number, taken) in numbers.into_iter().zip(are_taken(&islands)) {
+        is_taken[number] = taken;
+    }
+    let is_kept: Vec<bool> = (0..parts.known.len())
+        .map(|part| !parts.with_parents(part).any(|part| is_taken[part]))
+        .collect();
+    parts.only(&is_kept)
+}
+
 /// Fills cavities: takes away closed parts that face inward inside an outward one, of at most
 /// `at_most_mm3` or all, with everything that floats in them.
 ///
@@ -103,19 +164,13 @@ pub fn fill_cavities(
 ) -> Result<Kept, MeshError> {
     let most = at_most_mm3.map_or(Ok(f64::INFINITY), MeshError::volume)?;
     let parts = Parts::of(mesh, task)?;
-    let is_filled = |part: &Part| part.is_cavity && part.volume_mm3.abs() <= most;
-    let is_kept = parts.known.iter().map(|part| {
-        let mut at = Some(part);
-        // A parent encloses more than its child, so this ends.
-        while let Some(part) = at {
-            if is_filled(part) {
-                return false;
-            }
-            at = part.parent.map(|parent| &parts.known[parent as usize]);
-        }
-        true
-    });
-    let is_kept: Vec<bool> = is_kept.collect();
+    let is_filled = |part: usize| {
+        let part = &parts.known[part];
+        part.is_cavity && part.volume_mm3.abs() <= most
+    };
+    let is_kept: Vec<bool> = (0..parts.known.len())
+        .map(|part| !parts.with_parents(part).any(is_filled))
+        .collect();
     parts.only(&is_kept)
 }
 
@@ -133,13 +188,20 @@ impl<'a> Parts<'a> {
         let labels = Labels::of(mesh, task)?;
         let mut parts = labels.parts(mesh, task)?;
         if parts.len() > 1 {
-            let tree = TriangleTree::new(mesh, task)?;
-            inside::find_parents(&tree, &labels, &mut parts, task)?;
+            inside::find_parents(mesh, &labels, &mut parts, task)?;
         }
         Ok(Self {
             mesh,
             labels,
             known: parts,
+        })
+    }
+
+    /// A part, what it lies in, and so on.
+    fn with_parents(&self, part: usize) -> impl Iterator<Item = usize> {
+        // A parent encloses more than its child, so this ends.
+        std::iter::successors(Some(part), |&part| {
+            self.known[part].parent.map(|parent| parent as usize)
         })
     }
 

@@ -18,7 +18,7 @@ use rayon::prelude::*;
 use crate::vector::{cross, dot, minus};
 use crate::{MeshError, TriangleMesh};
 pub(crate) use sets::Sets;
-use vertex::Incidence;
+pub(crate) use vertex::Incidence;
 
 /// Triangles or vertices done between two looks at the cancel switch.
 const STRIDE: usize = 1 << 14;

@@ -8,7 +8,7 @@ use super::{STRIDE, is_collapsed};
 use crate::TriangleMesh;
 
 /// The triangles at each vertex, as the two other corners in the triangle's direction of turn.
-pub(super) struct Incidence {
+pub(crate) struct Incidence {
     /// Where each vertex's entries begin; one more than there are vertices.
     starts: Vec<usize>,
     /// `[next, previous]` of a vertex in one of its triangles.
@@ -17,7 +17,7 @@ pub(super) struct Incidence {
 
 impl Incidence {
     /// Sorts the corners of all triangles by vertex (counting sort); collapsed triangles are left out.
-    pub(super) fn of(mesh: &TriangleMesh) -> Self {
+    pub(crate) fn of(mesh: &TriangleMesh) -> Self {
         let triangles = || mesh.triangles().iter().filter(|t| !is_collapsed(**t));
         let mut starts = vec![0; mesh.vertices_mm().len() + 1];
         for &vertex in triangles().flatten() {
@@ -39,12 +39,12 @@ impl Incidence {
     }
 
     /// How many vertices there are.
-    fn vertices(&self) -> usize {
+    pub(crate) fn vertices(&self) -> usize {
         self.starts.len() - 1
     }
 
-    /// The entries of one vertex.
-    fn at(&self, vertex: usize) -> &[[u32; 2]] {
+    /// The entries `[next, previous]` of one vertex.
+    pub(crate) fn at(&self, vertex: usize) -> &[[u32; 2]] {
         &self.others[self.starts[vertex]..self.starts[vertex + 1]]
     }
 }

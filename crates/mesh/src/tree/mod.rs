@@ -98,6 +98,30 @@ impl<'a> TriangleTree<'a> {
         &self.nodes
     }
 
+    /// Calls `visit` with each slot whose box touches `bounds`; `stack` is kept to save allocations.
+    pub(crate) fn visit_touching(
+        &self,
+        bounds: &Bounds,
+        stack: &mut Vec<u32>,
+        mut visit: impl FnMut(&Slot),
+    ) {
+        stack.clear();
+        stack.extend((!self.nodes.is_empty()).then_some(0));
+        while let Some(number) = stack.pop() {
+            let node = &self.nodes[number as usize];
+            if !node.bounds.touches(bounds) {
+                continue;
+            }
+            if node.right != 0 {
+                stack.extend([node.right, number + 1]);
+                continue;
+            }
+            let slots = &self.slots[node.first as usize..node.end as usize];
+            let touching = slots.iter().filter(|slot| slot.bounds.touches(bounds));
+            touching.for_each(&mut visit);
+        }
+    }
+
     /// The corners (mm) of a slot's triangle.
     #[inline]
     pub(crate) fn corners_mm(&self, slot: &Slot) -> Corners {

@@ -28,6 +28,7 @@ __all__ = [
     "check",
     "decimate",
     "fill_cavities",
+    "fill_holes",
     "find_series",
     "histogram",
     "keep_islands",
@@ -378,6 +379,8 @@ def render(
     depth: int = 8,
     scale: float = 1.1,
     true_edges: bool = True,
+    keep_table: bool = False,
+    holes: Literal["all"] | float | None = None,
     islands: Literal["largest"] | float | None = None,
     cavities: Literal["all"] | float | None = None,
     smooth_mm: float | None = None,
@@ -409,6 +412,13 @@ def check(
     progress: _Progress | None = None,
     cancel: Cancel | None = None,
 ) -> dict[str, Any]: ...
+def fill_holes(
+    mesh: Mesh,
+    *,
+    holes: Literal["all"] | float = ...,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Mesh: ...
 def keep_islands(
     mesh: Mesh,
     *,
