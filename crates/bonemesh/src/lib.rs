@@ -35,6 +35,7 @@ mod after_care;
 mod check;
 pub mod cli;
 mod error;
+mod left_out;
 mod memory;
 mod of_cloud;
 mod panics;
@@ -55,7 +56,7 @@ pub use picture::{check_picture_target, write_histogram};
 pub use region::{RegionRequest, RegionResult, select_roi};
 pub use render::{Rendered, mesh_cloud, point_cloud, render, render_volume};
 pub use report::{
-    CheckReport, RegionReport, RenderReport, Seconds, TableReport, check as check_topology,
+    CheckReport, LeftOutIslands, RegionReport, RenderReport, Seconds, check as check_topology,
 };
 pub use settings::{AlphaRule, Method, Sampling, Settings};
 pub use source::{Contents, Reading, Source};

@@ -12,10 +12,10 @@ use bonemesh_task::{Task, pool};
 use bonemesh_volume::{Volume, Voxels};
 
 use crate::after_care::cared_for;
+use crate::left_out::leave_out;
 use crate::of_cloud::cloud_to_mesh;
-use crate::report::{RenderReport, Seconds, TableReport, check};
+use crate::report::{RenderReport, Seconds, check};
 use crate::source::{Reading, Source};
-use crate::table::without_table;
 use crate::thresholds::chosen;
 use crate::{AlphaRule, Error, Method, Sampling, Settings};
 
@@ -158,21 +158,13 @@ fn volume_to_closed_surface(
         let mesh = isosurface(&volume, placing, task).map_err(in_words)?;
         (mesh, None)
     };
-    let mut topology = check(&mesh, task)?;
-    let mut left_out = None;
-    let mut mesh = mesh;
-    if settings.leave_out_table && topology.components > 1 {
-        let kept = without_table(&mesh, &volume, task)?;
-        if !kept.removed.is_empty() {
-            left_out = Some(TableReport::of(&kept.removed));
-            mesh = kept.mesh;
-            topology = check(&mesh, task)?;
-        }
-    }
+    let (mesh, left_out) = leave_out(&mesh, &volume, settings, task)?;
+    let topology = check(&mesh, task)?;
     seconds.surface = lap(&mut clock);
     seconds.total = seconds.edges + seconds.surface;
     let mut report = RenderReport::new(settings, &topology, seconds);
-    report.left_out_table = left_out;
+    report.left_out_table = left_out.table;
+    report.left_out_specks = left_out.specks;
     report.tetrahedra = labelled.map(|(tetrahedra, _)| tetrahedra);
     report.filled_mm3 = labelled.map(|(_, filled_mm3)| filled_mm3);
     Ok(Rendered { mesh, report })

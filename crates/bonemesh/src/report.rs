@@ -1,6 +1,6 @@
 //! What is said of a result: plain values with units in their names, ready for JSON.
 
-use bonemesh_mesh::{RemovedPart, Topology, TriangleMesh, check_topology};
+use bonemesh_mesh::{Island, Topology, TriangleMesh, check_topology};
 use bonemesh_roi::Region;
 use bonemesh_task::Task;
 use serde::Serialize;
@@ -30,29 +30,33 @@ pub struct Seconds {
     pub total: f64,
 }
 
-/// What a mesh is made without.
+/// Islands that a mesh is made without.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct TableReport {
-    /// How many parts that do not touch.
-    pub parts: usize,
-    /// Their volume, cavities taken off.
+pub struct LeftOutIslands {
+    /// How many.
+    pub islands: usize,
+    /// Their volume, cavities in them counted in.
     pub volume_mm3: f64,
 }
 
-impl TableReport {
-    pub(crate) fn of(removed: &[RemovedPart]) -> Self {
-        let signed = |part: &RemovedPart| {
-            if part.is_cavity {
-                -part.volume_mm3
-            } else {
-                part.volume_mm3
-            }
-        };
-        Self {
-            parts: removed.len(),
-            volume_mm3: removed.iter().map(signed).sum(),
-        }
+impl LeftOutIslands {
+    /// Those that go; `None` if none does.
+    pub(crate) fn of(islands: &[Island<'_>], are_taken: &[bool]) -> Option<Self> {
+        let taken = islands.iter().zip(are_taken).filter(|(_, taken)| **taken);
+        let volumes = taken.map(|(island, _)| island.volume_mm3.abs());
+        let (islands, volume_mm3) = volumes.fold((0, 0.0), |(n, sum), mm3| (n + 1, sum + mm3));
+        (islands > 0).then_some(Self {
+            islands,
+            volume_mm3,
+        })
     }
+}
+
+/// What a closed surface is made without.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct LeftOut {
+    pub(crate) table: Option<LeftOutIslands>,
+    pub(crate) specks: Option<LeftOutIslands>,
 }
 
 /// What is said of a rendered mesh.
@@ -99,7 +103,9 @@ pub struct RenderReport {
     /// Volume inside the mesh; with alpha it goes through the centres of the edge pixels.
     pub volume_mm3: f64,
     /// Islands that look like the scanner's table or headrest; `None` if there are none.
-    pub left_out_table: Option<TableReport>,
+    pub left_out_table: Option<LeftOutIslands>,
+    /// Islands too small for a bone; `None` if there are none.
+    pub left_out_specks: Option<LeftOutIslands>,
     /// What was done to the finished mesh; `None` if nothing was asked for.
     pub after_care: Option<AfterCareReport>,
     /// Seconds of each step.
@@ -134,6 +140,7 @@ impl RenderReport {
             filled_mm3: None,
             volume_mm3: check.volume_mm3,
             left_out_table: None,
+            left_out_specks: None,
             after_care: None,
             seconds,
             peak_mib: peak_mib(),

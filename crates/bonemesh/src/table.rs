@@ -6,7 +6,7 @@
 //! bare island goes; of dry bone only what is extruded all along the stack. What hangs together with
 //! bone stays.
 
-use bonemesh_mesh::{Island, Kept, TriangleMesh, take_islands};
+use bonemesh_mesh::Island;
 use bonemesh_segment::{Mask, outside_air};
 use bonemesh_task::Task;
 use bonemesh_volume::{Affine, Volume, Voxels};
@@ -36,17 +36,15 @@ const SLABS_APART: i32 = 4;
 const SAME: f64 = 0.8;
 const ALONG: f64 = 0.9;
 
-/// The mesh without table and headrest.
-pub(crate) fn without_table(
-    mesh: &TriangleMesh,
+/// Which islands are the scanner's table and headrest.
+pub(crate) fn are_table(
+    islands: &[Island<'_>],
     volume: &Volume,
     task: &Task,
-) -> Result<Kept, Error> {
-    let Some(voxel_from_patient) = volume.geometry().patient_from_voxel().inverse() else {
-        return Ok(Kept {
-            mesh: mesh.clone(),
-            removed: Vec::new(),
-        });
+) -> Result<Vec<bool>, Error> {
+    let voxel_from_patient = volume.geometry().patient_from_voxel().inverse();
+    let (Some(voxel_from_patient), true) = (voxel_from_patient, islands.len() > 1) else {
+        return Ok(vec![false; islands.len()]);
     };
     let outside = outside_air(volume, task)?;
     let scan = Scan {
@@ -55,11 +53,8 @@ pub(crate) fn without_table(
         voxel_from_patient,
         spacing_mm: volume.geometry().spacing_mm(),
     };
-    let are_taken = |islands: &[Island<'_>]| {
-        let looks: Vec<Look> = islands.par_iter().map(|i| scan.look(i)).collect();
-        are_foreign(&looks)
-    };
-    Ok(take_islands(mesh, are_taken, task)?)
+    let looks: Vec<Look> = islands.par_iter().map(|i| scan.look(i)).collect();
+    Ok(are_foreign(&looks))
 }
 
 /// What an island looks like.

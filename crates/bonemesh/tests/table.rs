@@ -1,8 +1,8 @@
-//! The scanner's table and headrest are left out, and nothing else.
+//! The scanner's table and headrest, and specks, are left out, and nothing else.
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-use bonemesh::{Rendered, Settings, Task, Volume, Voxels, render_volume};
+use bonemesh::{Islands, Rendered, Settings, Task, Volume, Voxels, render_volume};
 use bonemesh_volume::{Affine, Geometry};
 use ndarray::Array3;
 
@@ -68,7 +68,7 @@ fn rendered(scene: Scene, settings: &Settings) -> Rendered {
 fn a_patient_is_left_with_all_of_his_bones() {
     let without = rendered(patient, &Settings::default());
     let table = without.report.left_out_table.unwrap();
-    assert_eq!(table.parts, 1);
+    assert_eq!(table.islands, 1);
     assert_eq!(without.report.components, 3, "skull, its inside and jaw");
     assert!(without.report.manifold && without.report.watertight);
     let [_, high] = without.mesh.bounds_mm().unwrap();
@@ -88,7 +88,7 @@ fn a_patient_is_left_with_all_of_his_bones() {
 #[test]
 fn dry_bone_keeps_its_loose_parts() {
     let report = rendered(dry_bone, &Settings::default()).report;
-    assert_eq!(report.left_out_table.unwrap().parts, 1);
+    assert_eq!(report.left_out_table.unwrap().islands, 1);
     assert_eq!(report.components, 3, "skull, its inside and jaw");
 }
 
@@ -97,4 +97,55 @@ fn what_hangs_together_with_bone_stays() {
     let report = rendered(dry_bone_on_its_table, &Settings::default()).report;
     assert_eq!(report.left_out_table, None);
     assert!(report.volume_mm3 > 40_000.0, "skull and board");
+}
+
+/// A voxel of bone in air, and a bone as small as an ossicle.
+fn specks(at: [f64; 3]) -> i16 {
+    let is_near = |centre: [f64; 3], mm: f64| (0..3).all(|k| (at[k] - centre[k]).abs() < mm);
+    if is_near([0.0, 0.0, 20.0], 0.3) || is_near([10.0, 0.0, 20.0], 1.1) {
+        BONE
+    } else {
+        SOFT
+    }
+}
+
+#[test]
+fn specks_go_unless_islands_are_chosen() {
+    let volume = |pixel_mm: f64| {
+        let shape = [40, 60, 60];
+        let origin = [-10.0, -10.0, 10.0];
+        let axes = [
+            [pixel_mm, 0.0, 0.0],
+            [0.0, pixel_mm, 0.0],
+            [0.0, 0.0, pixel_mm],
+        ];
+        let affine = Affine::from_axes(axes[0], axes[1], axes[2], origin);
+        let hu = Array3::from_shape_fn(shape, |(k, j, i)| {
+            specks(affine.apply([i as f64, j as f64, k as f64]))
+        });
+        let geometry = Geometry::new(shape, affine).unwrap();
+        Volume::new(Voxels::I16(hu), geometry).unwrap()
+    };
+    let report = |islands| {
+        let mut settings = Settings::default();
+        settings.after_care.islands = islands;
+        let rendered = render_volume(&volume(0.5), &settings, &Task::default());
+        rendered.unwrap().report
+    };
+    let usual = report(None);
+    assert_eq!(usual.left_out_specks.unwrap().islands, 1);
+    assert_eq!(usual.components, 1);
+    let all = report(Some(Islands::AtLeastMm3(0.0)));
+    assert_eq!(all.left_out_specks, None);
+    assert_eq!(all.components, 2);
+}
+
+#[test]
+fn a_scan_of_one_speck_shows_it() {
+    let shape = [9, 9, 9];
+    let affine = Affine::from_axes([0.2, 0.0, 0.0], [0.0, 0.2, 0.0], [0.0, 0.0, 0.2], [0.0; 3]);
+    let hu = Array3::from_shape_fn(shape, |at| if at == (4, 4, 4) { BONE } else { SOFT });
+    let volume = Volume::new(Voxels::I16(hu), Geometry::new(shape, affine).unwrap()).unwrap();
+    let rendered = render_volume(&volume, &Settings::default(), &Task::default()).unwrap();
+    assert_eq!(rendered.report.components, 1);
 }

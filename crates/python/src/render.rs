@@ -55,7 +55,8 @@ pub(crate) fn methods() -> Vec<&'static str> {
 /// - `keep_table`: keeps the scanner's table and headrest, which an isosurface and a labelled one
 ///   leave out where they touch no bone (`report["left_out_table"]`).
 /// - `holes`: "all", or the longest extent (mm) of the holes filled; None fills none.
-/// - `islands`: "largest", or the least volume (mm3) of the islands kept; None keeps all.
+/// - `islands`: "largest", or the least volume (mm3) of the islands kept; None keeps all but
+///   specks of an isosurface or a labelled one, of less than 1 mm3 (`report["left_out_specks"]`).
 /// - `cavities`: "all", or the largest volume (mm3) of the cavities filled; None fills none.
 /// - `smooth_mm`: smooth and move no vertex further than this; None does not smooth.
 /// - `triangles`, `decimate_mm`: take triangles away until so many are left, or as long as the surface

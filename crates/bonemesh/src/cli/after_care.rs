@@ -18,7 +18,8 @@ pub(super) struct AfterCareArguments {
     /// Fill `all` holes of an open mesh, or those that are no longer than this.
     #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = after_care::holes)]
     fill_holes: Option<Holes>,
-    /// Keep only the `largest` island of the mesh, or all of at least this volume.
+    /// Keep only the `largest` island of the mesh, or all of at least this volume; a rendered
+    /// isosurface or labelled one lacks specks under 1 mm3 unless this is given.
     #[arg(long, value_name = "MM3", allow_negative_numbers = true, value_parser = after_care::islands)]
     islands: Option<Islands>,
     /// Fill `all` cavities inside the bone, or those of at most this volume.

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use crate::report::{RegionReport, RenderReport};
+use crate::report::{RegionReport, RenderReport, Seconds};
 use crate::source::Contents;
 use crate::{AfterCareReport, PrintCheck};
 
@@ -81,12 +81,22 @@ pub(super) fn rendered(report: &RenderReport, file: &Path) -> String {
         ));
     }
     line(format!("  {}", verdict(report.watertight, report.manifold)));
-    if let Some(left_out) = report.left_out_table {
-        line(format!(
-            "  left out what looks like the scanner's table: {:.2} cm3 in {} parts (--keep-table keeps it)",
-            left_out.volume_mm3 / MM3_PER_CM3,
-            left_out.parts
-        ));
+    let left_out = [
+        (
+            "the scanner's table",
+            report.left_out_table,
+            "--keep-table keeps it",
+        ),
+        ("specks", report.left_out_specks, "--islands 0 keeps them"),
+    ];
+    for (name, left_out, remedy) in left_out {
+        if let Some(left_out) = left_out {
+            line(format!(
+                "  left out what looks like {name}: {:.2} cm3 in {} islands ({remedy})",
+                left_out.volume_mm3 / MM3_PER_CM3,
+                left_out.islands
+            ));
+        }
     }
     if let Some(report) = &report.after_care {
         text.push_str(&after_care(report));
@@ -98,15 +108,33 @@ pub(super) fn rendered(report: &RenderReport, file: &Path) -> String {
         text.push_str(&l);
         text.push('\n');
     };
-    let s = &report.seconds;
-    line(format!(
-        "  {:.2} s: read {:.2}, edges {:.2}, cloud {:.2}, neighbours {:.2}, tetrahedra {:.2}, surface {:.2}, write {:.2}",
-        s.total, s.read, s.edges, s.cloud, s.neighbours, s.tetrahedra, s.surface, s.write
-    ));
+    line(format!("  {}", seconds(&report.seconds)));
     for warning in &report.warnings {
         line(format!("  note: {warning}"));
     }
     text
+}
+
+/// Steps that take less than these seconds are not named.
+const SHOWN_S: f64 = 0.005;
+
+/// The time of all, and of the steps that took place.
+fn seconds(seconds: &Seconds) -> String {
+    let steps = [
+        ("read", seconds.read),
+        ("edges", seconds.edges),
+        ("cloud", seconds.cloud),
+        ("neighbours", seconds.neighbours),
+        ("tetrahedra", seconds.tetrahedra),
+        ("surface", seconds.surface),
+        ("write", seconds.write),
+    ];
+    let steps: Vec<String> = steps
+        .into_iter()
+        .filter(|(_, of_step)| *of_step >= SHOWN_S)
+        .map(|(name, of_step)| format!("{name} {of_step:.2}"))
+        .collect();
+    format!("{:.2} s: {}", seconds.total, steps.join(", "))
 }
 
 /// Holes left that the text names; the report has more of them.

@@ -121,12 +121,12 @@ impl Island<'_> {
 /// number of threads.
 ///
 /// # Errors
-/// [`MeshError::Cancelled`]
-pub fn take_islands(
+/// [`MeshError::Cancelled`], and what `are_taken` answers with.
+pub fn take_islands<E: From<MeshError>>(
     mesh: &TriangleMesh,
-    are_taken: impl FnOnce(&[Island<'_>]) -> Vec<bool>,
+    are_taken: impl FnOnce(&[Island<'_>]) -> Result<Vec<bool>, E>,
     task: &Task,
-) -> Result<Kept, MeshError> {
+) -> Result<Kept, E> {
     let parts = Parts::of(mesh, task)?;
     let by_part = parts.labels.triangles_of_parts();
     let numbers: Vec<usize> = (0..parts.known.len())
@@ -141,13 +141,13 @@ pub fn take_islands(
         })
         .collect();
     let mut is_taken = vec![false; parts.known.len()];
-    for (number, taken) in numbers.into_iter().zip(are_taken(&islands)) {
+    for (number, taken) in numbers.into_iter().zip(are_taken(&islands)?) {
         is_taken[number] = taken;
     }
     let is_kept: Vec<bool> = (0..parts.known.len())
         .map(|part| !parts.with_parents(part).any(|part| is_taken[part]))
         .collect();
-    parts.only(&is_kept)
+    Ok(parts.only(&is_kept)?)
 }
 
 /// Fills cavities: takes away closed parts that face inward inside an outward one, of at most

@@ -1,0 +1,59 @@
+//! What a closed surface is made without, unless it is asked for: the scanner's table, and specks.
+
+use bonemesh_mesh::{Island, TriangleMesh, take_islands};
+use bonemesh_task::Task;
+use bonemesh_volume::Volume;
+
+use crate::report::{LeftOut, LeftOutIslands};
+use crate::table::are_table;
+use crate::{Error, Settings};
+
+/// A loose speck of less than this is noise, or too small to print and to plan with; the smallest
+/// bone of the body, the stapes, weighs some 3 mg, which is more. Specks are half of all islands in
+/// scans of heads, and 0.004 percent of their bone.
+const SPECK_MM3: f64 = 1.0;
+/// In scans of small things a speck is as many voxels.
+const SPECK_VOXELS: f64 = 8.0;
+
+/// The mesh without table and specks, as far as `settings` leave them out.
+pub(crate) fn leave_out(
+    mesh: &TriangleMesh,
+    volume: &Volume,
+    settings: &Settings,
+    task: &Task,
+) -> Result<(TriangleMesh, LeftOut), Error> {
+    let mut left_out = LeftOut::default();
+    // Who says which islands stay has said it of specks as well.
+    let least_mm3 = match settings.after_care.islands {
+        None => speck_mm3(volume),
+        Some(_) => 0.0,
+    };
+    let are_taken = |islands: &[Island<'_>]| -> Result<Vec<bool>, Error> {
+        let mut taken = are_specks(islands, least_mm3);
+        left_out.specks = LeftOutIslands::of(islands, &taken);
+        if settings.leave_out_table {
+            let are_table = are_table(islands, volume, task)?;
+            left_out.table = LeftOutIslands::of(islands, &are_table);
+            for (taken, is_table) in taken.iter_mut().zip(are_table) {
+                *taken |= is_table;
+            }
+        }
+        Ok(taken)
+    };
+    let kept = take_islands(mesh, are_taken, task)?;
+    Ok((kept.mesh, left_out))
+}
+
+/// Islands of less than this volume are specks.
+fn speck_mm3(volume: &Volume) -> f64 {
+    let voxel_mm3 = volume.geometry().patient_from_voxel().determinant().abs();
+    SPECK_MM3.min(SPECK_VOXELS * voxel_mm3)
+}
+
+/// Which islands are smaller than `least_mm3`; never the largest.
+fn are_specks(islands: &[Island<'_>], least_mm3: f64) -> Vec<bool> {
+    let size = |island: &Island<'_>| island.volume_mm3.abs();
+    let largest_mm3 = islands.iter().map(size).fold(0.0, f64::max);
+    let least_mm3 = least_mm3.min(largest_mm3);
+    islands.iter().map(|i| size(i) < least_mm3).collect()
+}
