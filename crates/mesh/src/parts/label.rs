@@ -1,10 +1,11 @@
 //! Which triangle belongs to which part, and what each part is like.
 
 use bonemesh_task::{Cancelled, Task};
+use rayon::prelude::*;
 
 use crate::TriangleMesh;
 use crate::topology::Sets;
-use crate::vector::{Vector, cross, dot, minus};
+use crate::vector::{Vector, cross, dot, minus, plus_scaled};
 
 /// Triangles done between two looks at the cancel switch.
 const STRIDE: usize = 1 << 16;
@@ -58,45 +59,113 @@ impl Labels {
 
     /// Volume, size and tip of each part; parents are not known yet.
     pub(super) fn parts(&self, mesh: &TriangleMesh, task: &Task) -> Result<Vec<Part>, Cancelled> {
-        let mut bounds = vec![([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]); self.count];
-        let mut tips = vec![[f64::NEG_INFINITY; 3]; self.count];
-        let labelled = || mesh.triangles().iter().zip(&self.of_triangles);
-        for (triangle, &label) in labelled() {
-            let (low, high) = &mut bounds[label as usize];
-            for corner in mesh.corners_mm(*triangle) {
-                *low = [0, 1, 2].map(|axis| low[axis].min(corner[axis]));
-                *high = [0, 1, 2].map(|axis| high[axis].max(corner[axis]));
-                let tip = &mut tips[label as usize];
-                if corner[0] > tip[0] {
-                    *tip = corner;
-                }
-            }
+        let Some(&origin) = mesh.vertices_mm().first() else {
+            return Ok(Vec::new());
+        };
+        let chunks = mesh.triangles().par_chunks(STRIDE);
+        let measures: Vec<Vec<(u32, Measure)>> = chunks
+            .zip(self.of_triangles.par_chunks(STRIDE))
+            .map(|(triangles, labels)| {
+                task.check()?;
+                Ok(measures(mesh, origin, triangles, labels))
+            })
+            .collect::<Result<_, Cancelled>>()?;
+        let mut parts = vec![Measure::default(); self.count];
+        // In the order of the chunks, which no number of threads changes.
+        for (label, measure) in measures.iter().flatten() {
+            parts[*label as usize].add(measure);
         }
-        task.check()?;
-        let mut volumes = vec![0.0; self.count];
-        let mut sizes = vec![0; self.count];
-        let mut rims = vec![0_u64; self.count];
-        for (triangle, &label) in labelled() {
-            let label = label as usize;
-            let (low, high) = bounds[label];
-            let middle = [0, 1, 2].map(|axis| f64::midpoint(low[axis], high[axis]));
-            let [a, b, c] = mesh
-                .corners_mm(*triangle)
-                .map(|corner| minus(corner, middle));
-            volumes[label] += dot(a, cross(b, c)) / 6.0;
-            sizes[label] += 1;
-            rims[label] = rims[label].wrapping_add(rim(*triangle));
+        Ok(parts.iter().map(|part| part.part(origin)).collect())
+    }
+}
+
+/// What is added up over the triangles of a part.
+#[derive(Clone, Copy)]
+struct Measure {
+    /// Six times the volume between the triangles and the origin.
+    volume6: f64,
+    /// Twice the triangles' area along their normals; nothing for a closed part.
+    area2: Vector,
+    low: Vector,
+    high: Vector,
+    tip: Vector,
+    triangles: usize,
+    rim: u64,
+}
+
+impl Default for Measure {
+    fn default() -> Self {
+        Self {
+            volume6: 0.0,
+            area2: [0.0; 3],
+            low: [f64::INFINITY; 3],
+            high: [f64::NEG_INFINITY; 3],
+            tip: [f64::NEG_INFINITY; 3],
+            triangles: 0,
+            rim: 0,
         }
-        task.check()?;
-        let parts = (0..self.count).map(|label| Part {
-            volume_mm3: volumes[label],
-            triangles: sizes[label],
-            is_closed: rims[label] == 0,
-            tip: tips[label],
+    }
+}
+
+/// The measures of the parts in some triangles, in the order in which the parts' runs come up.
+fn measures(
+    mesh: &TriangleMesh,
+    origin: Vector,
+    triangles: &[[u32; 3]],
+    labels: &[u32],
+) -> Vec<(u32, Measure)> {
+    let mut found: Vec<(u32, Measure)> = Vec::new();
+    for (triangle, &label) in triangles.iter().zip(labels) {
+        // Triangles come in the order of the slices: one part's follow one another.
+        if found.last().is_none_or(|(last, _)| *last != label) {
+            found.push((label, Measure::default()));
+        }
+        if let Some((_, measure)) = found.last_mut() {
+            measure.see(mesh.corners_mm(*triangle), origin);
+            measure.rim = measure.rim.wrapping_add(rim(*triangle));
+        }
+    }
+    found
+}
+
+impl Measure {
+    fn see(&mut self, corners: [Vector; 3], origin: Vector) {
+        for corner in corners {
+            self.reach(corner, corner, corner);
+        }
+        let [a, b, c] = corners.map(|corner| minus(corner, origin));
+        self.volume6 += dot(a, cross(b, c));
+        self.area2 = plus_scaled(self.area2, 1.0, cross(minus(b, a), minus(c, a)));
+        self.triangles += 1;
+    }
+
+    fn add(&mut self, other: &Self) {
+        self.reach(other.low, other.high, other.tip);
+        self.volume6 += other.volume6;
+        self.area2 = plus_scaled(self.area2, 1.0, other.area2);
+        self.triangles += other.triangles;
+        self.rim = self.rim.wrapping_add(other.rim);
+    }
+
+    fn reach(&mut self, low: Vector, high: Vector, tip: Vector) {
+        self.low = [0, 1, 2].map(|axis| self.low[axis].min(low[axis]));
+        self.high = [0, 1, 2].map(|axis| self.high[axis].max(high[axis]));
+        // The first of equals.
+        if tip[0] > self.tip[0] {
+            self.tip = tip;
+        }
+    }
+
+    fn part(&self, origin: Vector) -> Part {
+        let middle = [0, 1, 2].map(|axis| f64::midpoint(self.low[axis], self.high[axis]));
+        Part {
+            volume_mm3: (self.volume6 - dot(self.area2, minus(middle, origin))) / 6.0,
+            triangles: self.triangles,
+            is_closed: self.rim == 0,
+            tip: self.tip,
             parent: None,
             is_cavity: false,
-        });
-        Ok(parts.collect())
+        }
     }
 }
 
