@@ -1,13 +1,14 @@
 """Measures every method and its peers on bodies of known shape and writes the tables.
 
 usage: accuracy.py --out DIR [--quick] [--methods A,B] [--bodies A,B] [--settings A,B] [--hu A,B]
-                   [--samples N] [--no-peers] [--no-picture]
+                   [--samples N] [--no-peers] [--no-picture] [--resume]
 
-`accuracy.md`, `accuracy.json` and `heat_map.png` go to the folder `--out`; rows are also added to
-`rows.jsonl` as they are measured. The metric is described in accuracy_metric.py.
+`accuracy.md`, `accuracy.json` and `heat_map.png` go to the folder `--out`; rows are also written to
+`rows.jsonl` as they are measured, from where `--resume` takes them. The metric is described in accuracy_metric.py.
 """
 
 import argparse
+import itertools
 import json
 import sys
 from collections.abc import Iterator, Sequence
@@ -28,6 +29,8 @@ QUICK_BODIES = ["sphere-shell", "tube", "box-with-hole"]
 THRESHOLDS_HU = [200.0, 250.0, 300.0, 400.0, 500.0, 650.0, 800.0]
 QUICK_HU = [250.0, 400.0, 800.0]
 HEAT_MAP_HU = 350.0
+# What makes a row different from the others.
+NAMES = ["setting", "body", "hu", "engine"]
 
 
 @dataclass(frozen=True)
@@ -72,7 +75,7 @@ def parsed() -> argparse.Namespace:
     parser.add_argument("--samples", type=int)
     for word in ["--methods", "--bodies", "--settings", "--hu"]:
         parser.add_argument(word, type=listed, default=[])
-    for word in ["--quick", "--no-peers", "--no-picture"]:
+    for word in ["--quick", "--no-peers", "--no-picture", "--resume"]:
         parser.add_argument(word, action="store_true")
     words = parser.parse_args()
     words.bodies = words.bodies or (QUICK_BODIES if words.quick else BODIES)
@@ -106,26 +109,28 @@ def row(
 
 
 def rows(
-    words: argparse.Namespace, chosen: Sequence[Engine]
+    words: argparse.Namespace, chosen: Sequence[Engine], known: Sequence[dict[str, Any]]
 ) -> Iterator[dict[str, Any]]:
-    """All meshes, body by body."""
+    """All meshes that are not `known`, body by body."""
+    done = {tuple(row[name] for name in NAMES) for row in known}
     for body in words.bodies:
         truth = Truth.of(body, words.samples)
         for setting in settings(words):
             volume = setting.scan(body)
-            for hu in words.hu:
-                for engine in chosen:
-                    found = row(engine, volume, hu, truth, words.samples)
-                    line = found.get("error") or found["away"]
-                    say(f"{setting.name} {body} {hu:g} HU {engine.name}: {line}")
-                    yield {
-                        "setting": setting.name,
-                        "body": body,
-                        "hu": hu,
-                        "engine": engine.name,
-                        "is_ours": engine.is_ours,
-                        **found,
-                    }
+            for hu, engine in itertools.product(words.hu, chosen):
+                if (setting.name, body, hu, engine.name) in done:
+                    continue
+                found = row(engine, volume, hu, truth, words.samples)
+                line = found.get("error") or found["away"]
+                say(f"{setting.name} {body} {hu:g} HU {engine.name}: {line}")
+                yield {
+                    "setting": setting.name,
+                    "body": body,
+                    "hu": hu,
+                    "engine": engine.name,
+                    "is_ours": engine.is_ours,
+                    **found,
+                }
 
 
 def how(words: argparse.Namespace) -> str:
@@ -144,9 +149,11 @@ def main() -> None:
     """Measures, writes, draws."""
     words = parsed()
     chosen = engines(words.methods, not words.no_peers)
-    found = []
-    with (words.out / "rows.jsonl").open("w", encoding="utf-8") as file:
-        for each in rows(words, chosen):
+    kept = words.out / "rows.jsonl"
+    lines = kept.read_text("utf-8").splitlines() if words.resume else []
+    found = [json.loads(line) for line in lines]
+    with kept.open("a" if words.resume else "w", encoding="utf-8") as file:
+        for each in rows(words, chosen, tuple(found)):
             found.append(each)
             file.write(f"{json.dumps(each)}\n")
             file.flush()
