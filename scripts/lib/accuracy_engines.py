@@ -11,14 +11,13 @@ from typing import Any
 import bonemesh
 import numpy as np
 import vtk
+from slicer_surface import surface_of
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 # Ways of a method that are measured as methods of their own, by their options.
 WAYS: dict[str, dict[str, dict[str, Any]]] = {
     "isosurface": {"isosurface, at the threshold": {"true_edges": False}},
 }
-# 3D Slicer's default smoothing factor of segments.
-SLICER_SMOOTHING = 0.5
 
 Made = tuple[bonemesh.Mesh, float]
 
@@ -88,22 +87,7 @@ def surface_nets(image: vtk.vtkImageData, _hu: float) -> vtk.vtkPolyData:
 
 def slicer(image: vtk.vtkImageData, _hu: float) -> vtk.vtkPolyData:
     """3D Slicer's conversion of a segment to a closed surface with its default parameters."""
-    march = vtk.vtkDiscreteFlyingEdges3D()
-    march.SetInputData(image)
-    march.SetValue(0, 1)
-    march.ComputeNormalsOff()
-    smooth = vtk.vtkWindowedSincPolyDataFilter()
-    smooth.SetInputConnection(march.GetOutputPort())
-    smooth.SetNumberOfIterations(int(20 + SLICER_SMOOTHING * 40))
-    smooth.SetPassBand(10.0 ** (-4.0 * SLICER_SMOOTHING))
-    smooth.SetEdgeAngle(15.0)
-    smooth.SetFeatureAngle(60.0)
-    smooth.BoundarySmoothingOff()
-    smooth.FeatureEdgeSmoothingOff()
-    smooth.NonManifoldSmoothingOn()
-    smooth.NormalizeCoordinatesOn()
-    smooth.Update()
-    return smooth.GetOutput()
+    return surface_of(image)
 
 
 def peer(

@@ -52,6 +52,7 @@ def folder_rows(
             rows[name] = {
                 "tetrahedra": of.tetrahedra_rows(name, measured),
                 "surface": [of.surface_row(name, measured)],
+                "default": of.default_rows(name, measured),
                 "line": of.line_rows(name, measured),
                 "threads": of.thread_rows(
                     name, tools, folder, words.hu, measured, place
@@ -80,7 +81,15 @@ def all_rows(
 ) -> list[Row]:
     """Subject by subject."""
     rows = []
-    for subject in ["tetrahedra", "surface", "random", "line", "growth", "threads"]:
+    for subject in [
+        "default",
+        "tetrahedra",
+        "surface",
+        "random",
+        "line",
+        "growth",
+        "threads",
+    ]:
         rows += others.get(subject, [])
         for of_one in by_folder.values():
             rows += of_one.get(subject, [])

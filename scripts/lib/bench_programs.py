@@ -21,6 +21,8 @@ OPEN3D = "Open3D alone"
 PUBLISHED = "the published method"
 QHULL = "SciPy's Qhull alone"
 READER = "SimpleITK"
+DEFAULT = "Bonemesh, default"
+SLICER = "3D Slicer's default by SimpleITK and VTK"
 
 ENGINES = [CGAL, GEOGRAM, HXT, CGAL_SERIAL, QHULL, OPEN3D]
 """Those that only tetrahedralise."""
@@ -34,10 +36,16 @@ class Tools:
     examples: Path
     peers: Path
 
-    def render(self, folder: str, hu: str, mesh: Path, threads: int) -> list[str]:
+    def render(
+        self, folder: str, hu: str, mesh: Path, threads: int, *more: str
+    ) -> list[str]:
         """From a folder to a mesh."""
-        command = [self.bonemesh, "render", folder, "--hu", hu, "--method", "alpha"]
+        command = [self.bonemesh, "render", folder, "--hu", hu, *more]
         return [*command, "--threads", str(threads), "--json", "-o", str(mesh)]
+
+    def alpha(self, folder: str, hu: str, mesh: Path, threads: int) -> list[str]:
+        """From a folder to a mesh by the published method."""
+        return self.render(folder, hu, mesh, threads, "--method", "alpha")
 
     def cgal(self, points: Path, mode: str, *alpha: str) -> list[str]:
         """Our program around CGAL."""
@@ -45,14 +53,17 @@ class Tools:
         return [binary, str(points), mode, str(THREADS), *alpha]
 
     def on_folder(self, folder: str, hu: str, meshes: Path) -> list[Program]:
-        """Everything from a folder to a surface; `2.stl` and `1.stl` are ours."""
-        ours = [self.render(folder, hu, meshes / f"{n}.stl", n) for n in (THREADS, 1)]
+        """Everything from a folder to a surface; `2.stl` and `1.stl` are ours of the published method."""
+        ours = [self.alpha(folder, hu, meshes / f"{n}.stl", n) for n in (THREADS, 1)]
+        default = self.render(folder, hu, meshes / "default.stl", THREADS)
         published = python("published_method.py", folder, hu, meshes / "published.stl")
         return [
             Program(OURS, ours[0], is_peer=False),
             Program(ONE_THREAD, ours[1], is_peer=False),
             Program(PUBLISHED, published),
             Program(READER, python("simpleitk_reading.py", folder)),
+            Program(DEFAULT, default, is_peer=False),
+            Program(SLICER, python("slicer_surface.py", folder, hu, meshes / "s.stl")),
         ]
 
     def on_points(self, points: Path) -> list[Program]:
