@@ -7,9 +7,30 @@ Report = dict[str, Any]
 """What the library reports: the same keys as in its JSON."""
 
 
+LEFT_OUT = ("left_out_table", "left_out_specks")
+"""What a closed surface is made without, as the library names it."""
+
+
+def of_rendering(report: Report) -> Report | None:
+    """Of a rendering's report what was left out and done afterwards; None where nothing was."""
+    left_out = {name: report[name] for name in LEFT_OUT if report.get(name)}
+    return {**(report.get("after_care") or {}), **left_out} or None
+
+
 def after_care_lines(report: Report) -> list[str]:
-    """What was removed and changed after the mesh was made; at least one line."""
+    """What was left out, removed and changed after the mesh was made; at least one line."""
     lines = []
+    table, specks = (report.get(name) for name in LEFT_OUT)
+    if table:
+        lines.append(f"Scanner's table left out ({volume_text(table['volume_mm3'])})")
+    if specks:
+        count = counted(specks["islands"], "speck", "specks")
+        lines.append(f"{count} left out ({volume_text(specks['volume_mm3'])})")
+    filled = report.get("filled_holes")
+    if filled is not None:
+        left = report.get("left_holes")
+        rest = f", {left:,} left" if left else ""
+        lines.append(f"{counted(filled, 'hole', 'holes')} filled{rest}")
     for name in ("island", "cavity"):
         many = {"island": "islands", "cavity": "cavities"}[name]
         count = report.get(f"removed_{many}") or 0

@@ -49,6 +49,7 @@ class RenderInputs:
             "series": series_choice(properties.series),
             "one_series": properties.one_series,
             "crop": properties.crop.strip() or None,
+            "keep_table": not properties.leave_out_table,
             **edge_options(properties),
             **after_care_options(properties),
         }
@@ -99,10 +100,16 @@ def edge_options(properties: Any) -> dict[str, Any]:
 
 def after_care_options(properties: Any) -> dict[str, Any]:
     """The keyword arguments of bonemesh.render for what is done to the finished mesh: only what is asked for."""
-    islands = {"others": "largest", "small": as_typed(properties.islands_mm3)}
+    holes = {"all": "all", "small": as_typed(properties.holes_mm)}
+    islands = {
+        "none": 0.0,
+        "others": "largest",
+        "small": as_typed(properties.islands_mm3),
+    }
     cavities = {"all": "all", "small": as_typed(properties.cavities_mm3)}
     reduced = properties.reduce_triangles
     asked = {
+        "holes": holes.get(properties.fill_holes),
         "islands": islands.get(properties.remove_islands),
         "cavities": cavities.get(properties.fill_cavities),
         "smooth_mm": as_typed(properties.smooth_mm) or None,

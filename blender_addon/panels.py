@@ -67,7 +67,7 @@ def draw_progress(layout: UILayout, running: job.Job) -> None:
 
 
 class BONEMESH_PT_after_care(Panel):
-    """What is done to the mesh after it was made; nothing unless asked for."""
+    """What is done to the mesh after it was made; little unless asked for."""
 
     bl_label = "After-Care"
     bl_parent_id = "BONEMESH_PT_segment_ct"
@@ -83,6 +83,9 @@ class BONEMESH_PT_after_care(Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         column = layout.column()
+        column.prop(properties, "fill_holes")
+        if properties.fill_holes == "small":
+            column.prop(properties, "holes_mm")
         column.prop(properties, "remove_islands")
         if properties.remove_islands == "small":
             column.prop(properties, "islands_mm3")
@@ -118,6 +121,9 @@ class BONEMESH_PT_advanced(Panel):
         column.prop(properties, "one_series")
         column.prop(properties, "crop")
         column.prop(properties, "method")
+        table = column.row()
+        table.active = not uses_edge_points(properties)
+        table.prop(properties, "leave_out_table")
         edges = column.column()
         edges.active = uses_edge_points(properties)
         edges.prop(properties, "sigma")

@@ -60,7 +60,17 @@ SAMPLERS = [
         "Ten neighbours at a time, in steps of ten percent (Rier's pseudo-uniform sampling)",
     ),
 ]
+FILLED_HOLES = [
+    ("none", "None", "Leaves the holes of an open mesh as they are"),
+    ("all", "All", "Closes every hole of an open mesh"),
+    ("small", "Up To", "Closes the holes that are no longer than this"),
+]
 REMOVED_ISLANDS = [
+    (
+        "specks",
+        "Specks",
+        "Removes what is too small for a bone, less than 1 mm³, from a closed surface (isosurface, labelled tetrahedra)",
+    ),
     ("none", "None", "Keeps every part of the mesh"),
     ("others", "All but the Largest", "Keeps the largest part of the mesh alone"),
     ("small", "Smaller Than", "Keeps the parts of at least this volume"),
@@ -156,9 +166,26 @@ class BonemeshProperties(PropertyGroup):
         description="How the surface is made",
         items=METHODS,  # the first is the default
     )
+    leave_out_table: BoolProperty(
+        name="Leave Out Table",
+        description="Recognises the scanner's table and headrest, where they touch no bone, and leaves them out of a closed surface (isosurface, labelled tetrahedra)",
+        default=True,
+    )
+    fill_holes: EnumProperty(
+        name="Fill Holes",
+        description="Which holes of the mesh are closed; isosurfaces and labelled tetrahedra have none",
+        items=FILLED_HOLES,
+    )
+    holes_mm: FloatProperty(
+        name="Length (mm)",
+        description="Holes up to this length are closed",
+        default=10.0,
+        min=0.0,
+        precision=1,
+    )
     remove_islands: EnumProperty(
         name="Remove Islands",
-        description="Which loose parts of the mesh are removed, such as the table under the patient",
+        description="Which loose parts of the mesh are removed",
         items=REMOVED_ISLANDS,
     )
     islands_mm3: FloatProperty(

@@ -11,6 +11,7 @@ import numpy as np
 from mathutils import Matrix, Vector
 from numpy.typing import NDArray
 
+from .findings import of_rendering
 from .selection import CENTRE_MM, PATIENT_MM, Source, relative_to
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ def add_bone(
     keep(placed, "threshold_hu", report["threshold_hu"])
     keep(placed, "series_uid", report["series_uid"])
     keep(placed, "spacing_mm", report["spacing_mm"])
-    keep_report(placed, AFTER_CARE, report.get("after_care"))
+    keep_report(placed, AFTER_CARE, of_rendering(report))
     context.view_layer.update()
     return placed
 

@@ -4,7 +4,12 @@ from typing import Any
 
 import pytest
 
-from blender_addon.findings import after_care_lines, check_lines, volume_text
+from blender_addon.findings import (
+    after_care_lines,
+    check_lines,
+    of_rendering,
+    volume_text,
+)
 
 NOTHING = {
     "removed_islands": 0,
@@ -44,10 +49,29 @@ NOTHING = {
             ["5,000 triangles removed, 20 vertices left as they were"],
         ),
         ({"removed_triangles": 0, "held_vertices": 0}, ["0 triangles removed"]),
+        (
+            {
+                "left_out_table": {"islands": 3, "volume_mm3": 172_630.0},
+                "left_out_specks": {"islands": 1, "volume_mm3": 0.5},
+            },
+            ["Scanner's table left out (172.63 cm³)", "1 speck left out (0.5 mm³)"],
+        ),
+        ({"filled_holes": 2, "left_holes": 0}, ["2 holes filled"]),
+        ({"filled_holes": 1, "left_holes": 1200}, ["1 hole filled, 1,200 left"]),
     ],
 )
 def test_after_care_is_told(report: dict[str, Any], lines: list[str]) -> None:
     assert after_care_lines(NOTHING | report) == lines
+
+
+def test_only_what_was_left_out_or_done_is_kept() -> None:
+    table = {"islands": 1, "volume_mm3": 7.0}
+    nothing = {"after_care": None, "left_out_table": None, "left_out_specks": None}
+    assert of_rendering(nothing) is None
+    assert of_rendering(nothing | {"left_out_table": table}) == {
+        "left_out_table": table
+    }
+    assert of_rendering(nothing | {"after_care": NOTHING}) == NOTHING
 
 
 def test_volumes_have_the_unit_that_keeps_them_short() -> None:

@@ -32,7 +32,10 @@ def fields(folder: Path, **changes: Any) -> Any:
         "series": "",
         "one_series": False,
         "crop": "",
-        "remove_islands": "none",
+        "leave_out_table": True,
+        "fill_holes": "none",
+        "holes_mm": 10.0,
+        "remove_islands": "specks",
         "islands_mm3": 1000.0,
         "fill_cavities": "none",
         "cavities_mm3": 100.0,
@@ -50,6 +53,12 @@ def test_defaults_ask_for_everything_there_is(tmp_path: Path) -> None:
     assert inputs.options["sample_percent"] is None
     assert inputs.options["series"] is None
     assert inputs.options["crop"] is None
+
+
+def test_the_table_is_left_out_unless_it_is_wanted(tmp_path: Path) -> None:
+    for leave_out in (True, False):
+        inputs = RenderInputs.read(fields(tmp_path, leave_out_table=leave_out))
+        assert inputs.options["keep_table"] is not leave_out
 
 
 def test_a_number_is_the_one_that_was_typed(tmp_path: Path) -> None:
@@ -71,6 +80,9 @@ def test_a_number_is_the_one_that_was_typed(tmp_path: Path) -> None:
     ("changes", "keywords"),
     [
         ({}, {}),
+        ({"fill_holes": "all"}, {"holes": "all"}),
+        ({"fill_holes": "small", "holes_mm": 2.5}, {"holes": 2.5}),
+        ({"remove_islands": "none"}, {"islands": 0.0}),
         ({"remove_islands": "others"}, {"islands": "largest"}),
         ({"remove_islands": "small"}, {"islands": 1000.0}),
         ({"remove_islands": "small", "islands_mm3": 0.0}, {"islands": 0.0}),
@@ -80,7 +92,10 @@ def test_a_number_is_the_one_that_was_typed(tmp_path: Path) -> None:
         ({"reduce_triangles": "number", "triangles": 5000}, {"triangles": 5000}),
         ({"reduce_triangles": "error", "decimate_mm": 0.25}, {"decimate_mm": 0.25}),
         ({"reduce_triangles": "error", "decimate_mm": 0.0}, {"decimate_mm": 0.0}),
-        ({"islands_mm3": 7.0, "cavities_mm3": 7.0, "triangles": 7}, {}),
+        (
+            {"holes_mm": 7.0, "islands_mm3": 7.0, "cavities_mm3": 7.0, "triangles": 7},
+            {},
+        ),
     ],
 )
 def test_only_the_after_care_that_is_asked_for_is_passed_on(
@@ -90,7 +105,7 @@ def test_only_the_after_care_that_is_asked_for_is_passed_on(
     assert after_care_options(properties) == keywords
     options = RenderInputs.read(properties).options
     assert {n: options[n] for n in keywords} == keywords
-    care = {"islands", "cavities", "smooth_mm", "triangles", "decimate_mm"}
+    care = {"holes", "islands", "cavities", "smooth_mm", "triangles", "decimate_mm"}
     assert care & set(options) == set(keywords)
 
 

@@ -23,6 +23,7 @@ FIELDS = [
     "Check Mesh",
 ]
 AFTER_CARE = [
+    "Fill Holes [fill_holes]",
     "Remove Islands [remove_islands]",
     "Fill Cavities [fill_cavities]",
     "Smooth (mm) [smooth_mm]",
@@ -33,6 +34,7 @@ ADVANCED = [
     "one_series",
     "crop",
     "method",
+    "leave_out_table",
     "sigma",
     "sample_percent",
     "sampler",
@@ -70,9 +72,11 @@ def test_after_care_is_there_but_closed_and_asks_for_numbers_only_where_they_cou
     panel: dict[str, Any],
 ) -> None:
     assert panel["after_care"] == AFTER_CARE
-    islands, cavities, smooth, triangles = AFTER_CARE
+    holes, islands, cavities, smooth, triangles = AFTER_CARE
     assert panel["after_care asked for"] == [
         [
+            holes,
+            "Length (mm) [holes_mm]",
             islands,
             "Volume (mm³) [islands_mm3]",
             cavities,

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from conftest import Blender
 
+from blender_addon.findings import of_rendering
+
 SETTINGS = {"hu_threshold": 400}
 
 
@@ -112,6 +114,10 @@ def test_every_advanced_setting_reaches_the_api(
             {"islands": 50.0, "decimate_mm": 0.05},
         ),
         (
+            {"leave_out_table": False, "remove_islands": "none"},
+            {"keep_table": True, "islands": 0.0},
+        ),
+        (
             {"fill_cavities": "all", "reduce_triangles": "number", "triangles": 4000},
             {"cavities": "all", "triangles": 4000},
         ),
@@ -126,7 +132,7 @@ def test_after_care_reaches_the_api_and_what_it_did_stays_with_the_object(
     assert np.array_equal(got["patient"], expected.vertices)
     assert np.array_equal(got["triangles"], expected.triangles)
     done = json.loads(answer["properties"]["bonemesh_after_care"])
-    assert without_times(done) == without_times(expected.report["after_care"])
+    assert without_times(done) == without_times(of_rendering(expected.report))
 
 
 def test_without_after_care_nothing_is_said_of_it(blender: Blender, ct: Path) -> None:

@@ -91,7 +91,12 @@ def test_decimation_stops_at_the_number_or_the_error(shell: bonemesh.Mesh) -> No
 def test_render_does_the_same(shell: bonemesh.Mesh) -> None:
     volume = bonemesh.phantom("sphere-shell", coarser=2.0)
     made = bonemesh.render(
-        volume, method="isosurface", holes="all", cavities="all", smooth_mm=0.1, triangles=2000
+        volume,
+        method="isosurface",
+        holes="all",
+        cavities="all",
+        smooth_mm=0.1,
+        triangles=2000,
     )
     apart = bonemesh.decimate(
         bonemesh.smooth(bonemesh.fill_cavities(shell), tolerance_mm=0.1), triangles=2000

@@ -90,6 +90,7 @@ def main(zip: str, out: str, ct: str) -> dict[str, Any]:
             for field in [properties.bl_rna.properties[name]]
         },
     }
+    properties.fill_holes = "small"
     properties.remove_islands = properties.fill_cavities = "small"
     answer["after_care asked for"] = []
     for properties.reduce_triangles in ("number", "error"):
