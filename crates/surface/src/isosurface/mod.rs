@@ -6,18 +6,21 @@
 //!    that bone which the scan cuts off is closed there.
 //! 3. `march`: a vertex on every edge between an inside and an outside voxel, and in each cube of
 //!    voxels the triangles of its case (`cases`).
+//! 4. `slide`: vertices slide along their edges until noise and stairs are smooth.
 //!
 //! The surface is a closed 2-manifold without self-intersections: see `cases`.
 
 mod blur;
 mod cases;
 pub(crate) mod cut;
+mod cuts;
 mod edge;
 pub(crate) mod grey;
 mod layer;
 mod level;
 pub(crate) mod march;
 pub(crate) mod signs;
+mod slide;
 
 use bonemesh_mesh::TriangleMesh;
 use bonemesh_task::{Cancelled, Task};
@@ -27,17 +30,23 @@ use rayon::prelude::*;
 
 use crate::SurfaceError;
 use cut::Crossing;
+use cuts::Cuts;
 use grey::{Grey, Voxel};
-use march::{Rows, cut_edges, triangles};
+use march::{Rows, triangles};
 use signs::Signs;
+
+/// Smoothing moves the surface hardly further than this part of a pixel: on phantoms it takes a sixth
+/// of the mean error off curved bone, and more does not take more.
+const SMOOTH_PIXELS: f32 = 0.2;
 
 /// How an isosurface is placed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IsosurfaceSettings {
     /// Bone is above this.
     pub threshold_hu: f64,
-    /// Moves the surface to the true edges of the bone, whatever the threshold; otherwise it lies
-    /// where the grey between voxels equals the threshold.
+    /// Moves the surface to the true edges of the bone, whatever the threshold, and smooths an
+    /// isosurface by up to a fifth of a pixel; otherwise it lies where the grey between voxels equals
+    /// the threshold.
     pub true_edges: bool,
 }
 
@@ -73,6 +82,7 @@ pub fn isosurface(
             |at| above.at(at),
             settings.crossing(),
             affine,
+            Some(tolerance_mm(volume)),
             task,
         )
     } else {
@@ -80,17 +90,23 @@ pub fn isosurface(
         match volume.voxels() {
             Voxels::I16(hu) => in_order(hu, |grey| {
                 let above = |at| grey.at(at) - threshold;
-                surface(grey.shape(), above, settings.crossing(), affine, task)
+                surface(grey.shape(), above, settings.crossing(), affine, None, task)
             }),
             Voxels::F32(hu) => in_order(hu, |grey| {
                 let above = |at| grey.at(at) - threshold;
-                surface(grey.shape(), above, settings.crossing(), affine, task)
+                surface(grey.shape(), above, settings.crossing(), affine, None, task)
             }),
         }
     };
     mesh?.ok_or(SurfaceError::NothingAbove {
         threshold_hu: settings.threshold_hu,
     })
+}
+
+/// How far smoothing moves the surface: what noise and stairs make of it, less than its detail.
+fn tolerance_mm(volume: &Volume) -> f32 {
+    let [x, y, _] = volume.geometry().spacing_mm();
+    SMOOTH_PIXELS * x.min(y) as f32
 }
 
 /// Columns, rows, slices.
@@ -180,12 +196,13 @@ fn steepest(affine: &Affine) -> impl Fn([f32; 3]) -> [f32; 3] + Sync + use<> {
 }
 
 /// The surface between voxels of a value above 0 and others, if there are any; `crossing` tells
-/// where between two values it is.
+/// where between two values it is, and what is smoothed moves hardly further than `tolerance_mm`.
 pub(crate) fn surface(
     shape: [usize; 3],
     value: impl Fn([usize; 3]) -> f32 + Sync,
     crossing: impl Fn(f32, f32) -> f32 + Sync,
     affine: &Affine,
+    tolerance_mm: Option<f32>,
     task: &Task,
 ) -> Result<Option<TriangleMesh>, SurfaceError> {
     let signs = Signs::of(shape, |at| value(at) > 0.0, task)?;
@@ -194,25 +211,18 @@ pub(crate) fn surface(
         return Ok(None);
     }
     task.begin("surface", 2 * signs.slices() - 1);
-    let vertices: Vec<Vec<[f64; 3]>> = (0..signs.slices())
-        .into_par_iter()
-        .map(|k| {
-            task.advance(1)?;
-            let mut vertices = Vec::new();
-            cut_edges(&signs, k, |node, axis| {
-                let place = cut::between(node, axis, shape, &value, &crossing)
-                    .unwrap_or_else(|| cut::border(node, axis));
-                vertices.push(affine.apply(place.map(f64::from)));
-            });
-            Ok(vertices)
-        })
-        .collect::<Result<_, SurfaceError>>()?;
+    let mut cuts = Cuts::of(&signs, shape, value, crossing, task)?;
     let mut triangles = triangles(&signs, &rows, task)?;
+    if let Some(tolerance_mm) = tolerance_mm {
+        cuts.smooth(&triangles, affine, tolerance_mm, task)?;
+    }
     if affine.determinant() < 0.0 {
         // Outward among columns, rows and slices is inward in a frame of the other hand.
         for triangle in &mut triangles {
             triangle.swap(1, 2);
         }
     }
-    Ok(Some(TriangleMesh::new(vertices.concat(), triangles)?))
+    let vertices = cuts.places.par_iter();
+    let vertices = vertices.map(|place| affine.apply(place.map(f64::from)));
+    Ok(Some(TriangleMesh::new(vertices.collect(), triangles)?))
 }

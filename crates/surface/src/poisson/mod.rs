@@ -95,7 +95,7 @@ pub fn poisson(
         grid.origin_mm,
     );
     let value = |[i, j, k]: [usize; 3]| function[(k * n + j) * n + i] - level;
-    surface([n; 3], value, cut::linear, &affine, task)?.ok_or(SurfaceError::NothingEnclosed)
+    surface([n; 3], value, cut::linear, &affine, None, task)?.ok_or(SurfaceError::NothingEnclosed)
 }
 
 /// Mean of the function at the points, each counting as its piece of the surface.
