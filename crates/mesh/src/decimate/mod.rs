@@ -1,13 +1,17 @@
 //! Fewer triangles for the same surface.
 //!
-//! 1. `holds`: rims, and vertices that are no part of a manifold, stay where they are.
+//! 1. `Bounds`: rims, and vertices that are no part of a manifold, stay where they are.
 //! 2. `Run::collapse`: the edge whose removal moves the surface least collapses to one vertex, at the
 //!    place with the least sum of squared distances to the planes of the triangles it stands for
 //!    (`quadric`); again and again. Collapses that would change the kind of surface, turn a triangle
-//!    over or squeeze it to a needle are passed over (`collapse`).
-//! 3. `faults`: triangles of the result that meet, exactly, or are too far from the given surface.
-//!    What the vertices of those stand for is held with all its triangles, and the same is done
-//!    again (`Run::repeat`), until there are none. Each time more is held, so it comes to an end.
+//!    over or squeeze it to a needle (`collapse`), or take the surface too far from the given vertices
+//!    there (`stay`), are passed over.
+//! 3. `faults`: triangles of the result that meet, exactly, or are too far from the given surface
+//!    (`distances`).
+//! 4. `Bounds::narrowed`: what stood for triangles that meet is held with all its triangles; what was
+//!    too far gets narrower limits, and is held in the end. The steps that are still allowed are done
+//!    again (`Run::repeat`) and others beside them, until there are no faults. Each time more is
+//!    bound, so it comes to an end.
 //!
 //! Collapsing is one thing after another, because each changes what may be done next to it; but what
 //! is far apart can be done side by side, and most of a large mesh is (`blocks`).

@@ -98,31 +98,34 @@ impl<'a> Run<'a> {
         is_narrower: &[bool],
         task: &Task,
     ) -> Result<Vec<bool>, Cancelled> {
-        let narrower = self.holds.iter().zip(is_narrower);
-        let mut is_other: Vec<bool> = narrower.map(|(h, is)| *is && *h == Hold::Star).collect();
+        let mut other = Others::new(self.holds.len());
+        for (vertex, hold) in (0..).zip(self.holds) {
+            if is_narrower[vertex as usize] && *hold == Hold::Star {
+                other.add(vertex, &self.stars);
+            }
+        }
         let mut is_narrower = is_narrower.to_vec();
         let mut surroundings = Surroundings::default();
         for (number, &step) in steps.iter().enumerate() {
             if number % STRIDE == 0 {
                 task.check()?;
             }
-            let [kept, gone] = [step.kept as usize, step.gone as usize];
-            surroundings.load(&self.stars, step.kept, step.gone);
-            let is_same = !surroundings.around().any(|v| is_other[v as usize]);
-            let is_asked = is_narrower[kept] || is_narrower[gone];
+            let ends = [step.kept, step.gone];
+            let is_asked = ends.iter().any(|v| is_narrower[*v as usize]);
             let is_allowed = |run: &Self, surroundings: &mut Surroundings| {
                 let entry = run.entry(step.kept, step.gone);
                 entry.is_some_and(|entry| run.allowed(entry, surroundings).is_some())
             };
-            if is_same && (!is_asked || is_allowed(self, &mut surroundings)) {
-                is_narrower[kept] = is_asked;
-                self.apply(step);
+            if other.are_near(ends) || is_asked && !is_allowed(self, &mut surroundings) {
+                for vertex in ends {
+                    other.add(vertex, &self.stars);
+                }
             } else {
-                is_other[kept] = true;
-                is_other[gone] = true;
+                is_narrower[step.kept as usize] = is_asked;
+                self.apply(step);
             }
         }
-        Ok(is_other)
+        Ok(other.is_other)
     }
 
     /// Collapses edges until the end is reached or none can be collapsed any more; if `at` is given,
@@ -326,6 +329,37 @@ impl<'a> Run<'a> {
             standing[step.gone as usize] = standing[step.kept as usize];
         }
         standing
+    }
+}
+
+/// Vertices that are not as they were in an earlier run.
+struct Others {
+    is_other: Vec<bool>,
+    /// Whether a vertex is one or has one as its neighbour. None of them goes, so none is lost.
+    is_near: Vec<bool>,
+    star: Vec<[u32; 3]>,
+}
+
+impl Others {
+    fn new(vertices: usize) -> Self {
+        Self {
+            is_other: vec![false; vertices],
+            is_near: vec![false; vertices],
+            star: Vec::new(),
+        }
+    }
+
+    fn add(&mut self, vertex: u32, stars: &Stars) {
+        if !std::mem::replace(&mut self.is_other[vertex as usize], true) {
+            stars.at(vertex, &mut self.star);
+            for near in self.star.as_flattened() {
+                self.is_near[*near as usize] = true;
+            }
+        }
+    }
+
+    fn are_near(&self, vertices: [u32; 2]) -> bool {
+        vertices.iter().any(|v| self.is_near[*v as usize])
     }
 }
 
