@@ -12,8 +12,9 @@
 use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;
 
+use super::bounds::Hold;
 use super::quadric::Quadric;
-use super::run::{End, Hold, Run, Step};
+use super::run::{Run, Step};
 use crate::stars::Stars;
 use crate::vector::Vector;
 
@@ -36,24 +37,24 @@ const DEPTH: f64 = 0.6;
 
 impl Run<'_> {
     /// Collapses inside blocks, as far as the whole would surely go.
-    pub(super) fn collapse_in_blocks(&mut self, end: End, task: &Task) -> Result<(), Cancelled> {
+    pub(super) fn collapse_in_blocks(&mut self, end: usize, task: &Task) -> Result<(), Cancelled> {
         for cut in CUTS.into_iter().cycle().take(MOST_ROUNDS) {
             let triangles: Vec<[u32; 3]> = self.stars.triangles().collect();
-            let wanted = SLACK * end.triangles as f64;
+            let wanted = SLACK * end as f64;
             if triangles.len() < 4 * MOST_VERTICES || wanted >= triangles.len() as f64 {
                 return Ok(());
             }
             let blocks = self.blocks(&triangles, cut, task)?;
-            let share = match end.triangles {
+            let share = match end {
                 0 => 0.0,
                 _ => LEAST_SHARE.max(wanted / triangles.len() as f64),
             };
             let found = blocks
                 .par_iter()
-                .map(|block| block.steps(self, end, DEPTH * share, task))
+                .map(|block| block.steps(self, DEPTH * share, task))
                 .collect::<Result<Vec<_>, Cancelled>>()?;
             let inner: usize = blocks.iter().map(Block::inner).sum();
-            let steps = match end.triangles {
+            let steps = match end {
                 0 => usize::MAX,
                 _ => ((1.0 - share) * inner as f64 / 2.0) as usize,
             };
@@ -133,16 +134,11 @@ impl Block {
     }
 
     /// The collapses in the block until this part of its triangles is left, in the whole's numbers.
-    fn steps(
-        &self,
-        whole: &Run<'_>,
-        end: End,
-        share: f64,
-        task: &Task,
-    ) -> Result<Vec<Step>, Cancelled> {
+    fn steps(&self, whole: &Run<'_>, share: f64, task: &Task) -> Result<Vec<Step>, Cancelled> {
         let vertices = self.vertices.iter().map(|&v| v as usize);
         let vertices_mm: Vec<Vector> = vertices.clone().map(|v| whole.vertices_mm[v]).collect();
-        let quadrics: Vec<Quadric> = vertices.map(|v| whole.quadrics[v]).collect();
+        let quadrics: Vec<Quadric> = vertices.clone().map(|v| whole.quadrics[v]).collect();
+        let points = whole.points.as_ref();
         let mut run = Run {
             holds: &self.holds,
             middle: whole.middle,
@@ -150,12 +146,11 @@ impl Block {
             versions: vec![0; vertices_mm.len()],
             vertices_mm,
             quadrics,
+            limits: vertices.map(|v| whole.limits[v]).collect(),
+            points: points.map(|points| points.part(&self.vertices)),
             steps: Vec::new(),
         };
-        let end = End {
-            triangles: (share * self.triangles.len() as f64) as usize,
-            ..end
-        };
+        let end = (share * self.triangles.len() as f64) as usize;
         run.collapse(end, None, task)?;
         let named = run.steps.into_iter().map(|step| Step {
             kept: self.vertices[step.kept as usize],

@@ -18,8 +18,8 @@ const MOST_AROUND: usize = 16;
 pub(super) struct Surroundings {
     /// Triangles at the end that stays, then at the end that goes, each with that end first.
     ends: [Vec<[u32; 3]>; 2],
-    /// Normals (not of length 1) after the collapse, with the vertex after `kept` in the triangle.
-    fans: Vec<(u32, Vector)>,
+    /// Normals (not of length 1) after the collapse, with the other vertices of the triangle.
+    fans: Vec<([u32; 2], Vector)>,
 }
 
 impl Surroundings {
@@ -97,9 +97,14 @@ impl Surroundings {
             if !is_facing {
                 return false;
             }
-            self.fans.push((triangle[1], normal));
+            self.fans.push(([triangle[1], triangle[2]], normal));
         }
-        self.is_unfolded(gone, kept)
+        self.is_unfolded()
+    }
+
+    /// The triangles that [`Self::keeps_shape`] has looked at, without the vertex that all share.
+    pub(super) fn rim(&self) -> impl ExactSizeIterator<Item = [u32; 2]> + '_ {
+        self.fans.iter().map(|(rim, _)| *rim)
     }
 
     /// The sum of all normals, long ones of large triangles.
@@ -112,14 +117,9 @@ impl Surroundings {
     }
 
     /// Whether neighbours around the new vertex do not fold together.
-    fn is_unfolded(&self, gone: u32, kept: u32) -> bool {
-        let ends = self.ends.iter().flatten();
-        let mut triangles = ends.filter(|t| !(t.contains(&gone) && t.contains(&kept)));
-        self.fans.iter().all(|(_, normal)| {
-            let Some(&[_, _, previous]) = triangles.next() else {
-                return true;
-            };
-            let mut beside = self.fans.iter().filter(|(next, _)| *next == previous);
+    fn is_unfolded(&self) -> bool {
+        self.fans.iter().all(|([_, previous], normal)| {
+            let mut beside = self.fans.iter().filter(|([next, _], _)| next == previous);
             beside.all(|(_, other)| {
                 let lengths = (dot(*normal, *normal) * dot(*other, *other)).sqrt();
                 dot(*normal, *other) >= LEAST_FOLD * lengths

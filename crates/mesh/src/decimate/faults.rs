@@ -4,23 +4,40 @@ use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
-use crate::distance::Near;
-use crate::exact::{has_area, meet};
-use crate::tree::Bounds;
-use crate::vector::Vector;
+use super::distances::Pair;
+use crate::exact::meet;
+use crate::stars::Stars;
 use crate::{MeshError, TriangleMesh, TriangleTree, find_intersections};
 
-/// Triangles or vertices done between two looks at the cancel switch.
+/// Triangles done between two looks at the cancel switch.
 const STRIDE: usize = 1 << 10;
+
+/// Vertices of a result where something is wrong.
+pub(super) struct Faults {
+    /// At triangles that meet.
+    pub(super) meeting: Vec<u32>,
+    /// Around which the two surfaces are further apart than the error bound.
+    pub(super) far: Vec<u32>,
+}
 
 /// Results, one after another, beside the mesh they are made of.
 ///
-/// A later result differs from the one before in few places, and distances are measured there alone.
+/// A later result differs from the one before in few places, and is looked at there alone.
 pub(super) struct Comparison<'a> {
-    given: &'a TriangleMesh,
     /// The error bound (mm) and the given mesh by place.
     bound: Option<(f64, TriangleTree<'a>)>,
-    before: Option<TriangleMesh>,
+    before: Option<Before>,
+    /// Whether a vertex of the last result is at a fault.
+    is_faulty: Vec<bool>,
+    /// Whether a triangle of the given mesh is near the last result, but not beside the vertices that
+    /// stand for its corners.
+    is_near_others: Vec<bool>,
+}
+
+/// A result, and for each vertex of the given mesh the one that stands for it.
+struct Before {
+    result: TriangleMesh,
+    standing: Vec<u32>,
 }
 
 impl<'a> Comparison<'a> {
@@ -34,162 +51,120 @@ impl<'a> Comparison<'a> {
             None => None,
         };
         Ok(Self {
-            given,
+            is_near_others: vec![false; bound.as_ref().map_or(0, |_| given.triangles().len())],
+            is_faulty: vec![false; given.vertices_mm().len()],
             bound,
             before: None,
         })
     }
 
-    /// Vertices of the result at triangles that meet, or around which the two surfaces are further
-    /// apart than the bound. What was far apart before and is as it was may be left out: its vertices are
-    /// held by now.
+    /// What is wrong with a result, where it is not as the one before was.
     ///
-    /// `standing`: for each vertex of the given mesh the one of the result that stands for it.
-    pub(super) fn faulty_vertices(
-        &self,
+    /// `stars`: of the result. `standing`: for each vertex of the given mesh the one of the result
+    /// that stands for it.
+    pub(super) fn faults(
+        &mut self,
         result: &TriangleMesh,
+        stars: &Stars,
         standing: &[u32],
         task: &Task,
-    ) -> Result<Vec<bool>, MeshError> {
-        let mut is_faulty = vec![false; result.vertices_mm().len()];
+    ) -> Result<Faults, MeshError> {
         let tree = TriangleTree::new(result, task)?;
-        let before = self.before.as_ref();
-        let new = before.map(|before| only_in(result, before));
-        let mut faulty: Vec<u32> = if let Some(new) = &new {
-            meeting(&tree, new, task)?
-        } else {
-            let found = find_intersections(&tree, usize::MAX, task)?;
-            let triangles = found.pairs.iter().flat_map(|pair| pair.triangles);
-            let corners = triangles.flat_map(|number| result.triangles()[number as usize]);
-            corners.collect()
+        let is_new = self.before.take().map(|before| {
+            let mut is_new = std::mem::take(&mut self.is_faulty);
+            mark_changes(&before, result, standing, &mut is_new);
+            is_new
+        });
+        let is_new = is_new.as_deref();
+        let mut faults = Faults {
+            meeting: meeting(&tree, is_new, task)?,
+            far: Vec::new(),
         };
         if let Some((error_mm, given)) = &self.bound {
-            let lost = match &self.before {
-                Some(before) => Some(part(before, &only_in(before, result))?),
-                None => None,
+            let pair = Pair {
+                given,
+                result: &tree,
+                stars,
+                standing,
+                is_new,
+                error_mm: *error_mm,
             };
-            let new = match &new {
-                Some(new) => part(result, new)?,
-                None => result.clone(),
-            };
-            let lost = match &lost {
-                Some(lost) => Some(TriangleTree::new(lost, task)?),
-                None => None,
-            };
-            faulty.extend(self.far_from(&tree, lost.as_ref(), standing, *error_mm, task)?);
-            faulty.extend(far_out(&new, given, *error_mm, task)?);
+            faults.far = pair.far_given(&mut self.is_near_others, task)?;
+            faults.far.extend(pair.far_result(task)?);
         }
-        for vertex in faulty {
-            is_faulty[vertex as usize] = true;
+        self.is_faulty = vec![false; standing.len()];
+        for vertex in faults.meeting.iter().chain(&faults.far) {
+            self.is_faulty[*vertex as usize] = true;
         }
-        Ok(is_faulty)
+        Ok(faults)
     }
 
     /// The next result is compared with this one.
-    pub(super) fn remember(&mut self, result: TriangleMesh) {
-        self.before = Some(result);
-    }
-
-    /// Vertices standing for triangles of the given mesh that are not wholly near the result; if
-    /// `lost` is given, only of those that may have been near what is in it.
-    fn far_from(
-        &self,
-        result: &TriangleTree<'_>,
-        lost: Option<&TriangleTree<'_>>,
-        standing: &[u32],
-        error_mm: f64,
-        task: &Task,
-    ) -> Result<Vec<u32>, Cancelled> {
-        task.begin("compare", self.given.triangles().len());
-        let far = self.given.triangles().par_chunks(STRIDE).map(|triangles| {
-            let mut near = Near::new(result, error_mm);
-            let mut near_lost = lost.map(|lost| Near::new(lost, error_mm));
-            let far = triangles.iter().filter(|triangle| {
-                let corners = self.given.corners_mm(**triangle);
-                let is_asked = near_lost.as_mut().is_none_or(|lost| lost.reaches(&corners));
-                is_asked && !near.holds_triangle(corners)
-            });
-            let standing = far.flatten().map(|&v| standing[v as usize]);
-            let standing: Vec<u32> = standing.collect();
-            task.advance(triangles.len())?;
-            Ok(standing)
-        });
-        Ok(far.collect::<Result<Vec<_>, _>>()?.concat())
+    pub(super) fn remember(&mut self, result: TriangleMesh, standing: Vec<u32>) {
+        self.before = Some(Before { result, standing });
     }
 }
 
-/// Vertices of triangles with a corner, an edge's middle or a centre far from the given mesh.
-fn far_out(
-    triangles: &TriangleMesh,
-    given: &TriangleTree<'_>,
-    error_mm: f64,
+/// Marks the vertices of a result around which anything is not as it was before.
+fn mark_changes(before: &Before, result: &TriangleMesh, standing: &[u32], is_new: &mut [bool]) {
+    let gone = only_in(&before.result, result);
+    let come = only_in(result, &before.result);
+    for vertex in gone.chain(come).flatten() {
+        is_new[*vertex as usize] = true;
+    }
+    for (now, then) in standing.iter().zip(&before.standing) {
+        is_new[*now as usize] |= now != then;
+    }
+}
+
+/// Corners of triangles that meet, as far as one of the two has a vertex where anything `is_new`.
+fn meeting(
+    tree: &TriangleTree<'_>,
+    is_new: Option<&[bool]>,
     task: &Task,
-) -> Result<Vec<u32>, Cancelled> {
-    task.begin("compare", triangles.triangles().len());
-    let far = triangles.triangles().par_chunks(STRIDE).map(|chunk| {
-        let mut near = Near::new(given, error_mm);
-        let far = chunk.iter().filter(|t| {
-            let points = probes(triangles.corners_mm(**t));
-            !points.into_iter().all(|point| near.holds_point(point))
-        });
-        let vertices: Vec<u32> = far.flatten().copied().collect();
-        task.advance(chunk.len())?;
-        Ok(vertices)
-    });
-    Ok(far.collect::<Result<Vec<_>, _>>()?.concat())
-}
-
-/// Corners of triangles that meet, as far as one of the two is among the `new`.
-fn meeting(tree: &TriangleTree<'_>, new: &[u32], task: &Task) -> Result<Vec<u32>, Cancelled> {
+) -> Result<Vec<u32>, MeshError> {
     let triangles = tree.mesh().triangles();
-    task.begin("intersections", new.len());
-    let found = new.par_chunks(STRIDE).map(|chunk| {
+    let Some(is_new) = is_new else {
+        let found = find_intersections(tree, usize::MAX, task)?;
+        let meeting = found.pairs.iter().flat_map(|pair| pair.triangles);
+        return Ok(meeting.flat_map(|t| triangles[t as usize]).collect());
+    };
+    task.begin("intersections", tree.slots().len());
+    let found = tree.slots().par_chunks(STRIDE).map(|slots| {
         let (mut found, mut stack) = (Vec::new(), Vec::new());
-        for &number in chunk {
-            let corners = tree.mesh().corners_mm(triangles[number as usize]);
-            if !has_area(&corners) {
+        for slot in slots {
+            let vertices = triangles[slot.triangle as usize];
+            if !vertices.iter().any(|v| is_new[*v as usize]) {
                 continue;
             }
-            tree.visit_touching(&Bounds::of(&corners), &mut stack, |slot| {
-                if slot.triangle != number && meet(&corners, &tree.corners_mm(slot)) {
-                    found.extend(triangles[number as usize]);
-                    found.extend(triangles[slot.triangle as usize]);
+            let corners = tree.corners_mm(slot);
+            tree.visit_touching(&slot.bounds, &mut stack, |other| {
+                if other.triangle != slot.triangle && meet(&corners, &tree.corners_mm(other)) {
+                    found.extend(vertices);
+                    found.extend(triangles[other.triangle as usize]);
                 }
             });
         }
-        task.advance(chunk.len())?;
+        task.advance(slots.len())?;
         Ok(found)
     });
-    Ok(found.collect::<Result<Vec<_>, _>>()?.concat())
+    Ok(found.collect::<Result<Vec<_>, Cancelled>>()?.concat())
 }
 
-/// The numbers of the triangles of one result that the other, with the same vertices in part at other
-/// places, has not.
-fn only_in(of: &TriangleMesh, other: &TriangleMesh) -> Vec<u32> {
+/// The triangles of one result that the other, with the same vertices in part at other places, has not.
+fn only_in<'a>(
+    of: &'a TriangleMesh,
+    other: &TriangleMesh,
+) -> impl Iterator<Item = &'a [u32; 3]> + use<'a> {
     let turned = |[a, b, c]: [u32; 3]| match a.min(b).min(c) {
         least if least == a => [a, b, c],
         least if least == b => [b, c, a],
         _ => [c, a, b],
     };
-    let others = other.triangles().iter().map(|t| turned(*t));
-    let others: FxHashSet<[u32; 3]> = others.collect();
-    let is_only = |triangle: [u32; 3]| {
-        !others.contains(&turned(triangle)) || of.corners_mm(triangle) != other.corners_mm(triangle)
-    };
-    let numbered = (0..).zip(of.triangles());
-    let only = numbered.filter(|(_, triangle)| is_only(**triangle));
-    only.map(|(number, _)| number).collect()
-}
-
-/// Some triangles of a mesh, with all its vertices.
-fn part(of: &TriangleMesh, numbers: &[u32]) -> Result<TriangleMesh, MeshError> {
-    let triangles = numbers.iter().map(|n| of.triangles()[*n as usize]);
-    TriangleMesh::new(of.vertices_mm().to_vec(), triangles.collect())
-}
-
-/// Where a triangle of the result is held against the given mesh.
-fn probes([a, b, c]: [Vector; 3]) -> [Vector; 7] {
-    let middle = |p: Vector, q: Vector| [0, 1, 2].map(|axis| f64::midpoint(p[axis], q[axis]));
-    let centre = [0, 1, 2].map(|axis| (a[axis] + b[axis] + c[axis]) / 3.0);
-    [a, b, c, middle(a, b), middle(b, c), middle(c, a), centre]
+    let bits = |mesh: &TriangleMesh, v: u32| mesh.vertices_mm()[v as usize].map(f64::to_bits);
+    let is_same = |v: &u32| bits(of, *v) == bits(other, *v);
+    let others = other.triangles().iter().filter(|t| t.iter().all(is_same));
+    let others: FxHashSet<[u32; 3]> = others.map(|t| turned(*t)).collect();
+    let only = of.triangles().iter();
+    only.filter(move |triangle| !others.contains(&turned(**triangle)))
 }

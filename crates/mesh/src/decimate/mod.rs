@@ -1,36 +1,41 @@
 //! Fewer triangles for the same surface.
 //!
-//! 1. `holds`: rims, and vertices that are no part of a manifold, stay where they are.
+//! 1. `Bounds`: rims, and vertices that are no part of a manifold, stay where they are.
 //! 2. `Run::collapse`: the edge whose removal moves the surface least collapses to one vertex, at the
 //!    place with the least sum of squared distances to the planes of the triangles it stands for
 //!    (`quadric`); again and again. Collapses that would change the kind of surface, turn a triangle
-//!    over or squeeze it to a needle are passed over (`collapse`).
-//! 3. `faults`: triangles of the result that meet, exactly, or are too far from the given surface.
-//!    What the vertices of those stand for is held with all its triangles, and the same is done
-//!    again (`Run::repeat`), until there are none. Each time more is held, so it comes to an end.
+//!    over or squeeze it to a needle (`collapse`), or take the surface too far from the given vertices
+//!    there (`stay`), are passed over.
+//! 3. `faults`: triangles of the result that meet, exactly, or are too far from the given surface
+//!    (`distances`).
+//! 4. `Bounds::narrowed`: what stood for triangles that meet is held with all its triangles; what was
+//!    too far gets narrower limits, and is held in the end. The steps that are still allowed are done
+//!    again (`Run::repeat`) and others beside them, until there are no faults. Each time more is
+//!    bound, so it comes to an end.
 //!
 //! Collapsing is one thing after another, because each changes what may be done next to it; but what
 //! is far apart can be done side by side, and most of a large mesh is (`blocks`).
 
 mod blocks;
+mod bounds;
 mod collapse;
+mod distances;
 mod faults;
+mod points;
 mod quadric;
 mod run;
+mod stay;
 
 use bonemesh_task::Task;
 
 use crate::stars::Stars;
 use crate::{MeshError, TriangleMesh};
+use bounds::Bounds;
 use faults::Comparison;
-use run::{End, Hold, Run, holds};
+use run::Run;
 
 /// Corners are numbered in 32 bits, and one number means none.
 const MOST_TRIANGLES: usize = u32::MAX as usize / 3 - 1;
-
-/// Part of the error bound that the mean distance to the planes may reach: with more, much is found
-/// to be too far and done again; with less, triangles stay that could go.
-const TYPICAL: f64 = 0.5;
 
 /// How far [`decimate`] goes; with neither, nothing is done.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -73,67 +78,45 @@ pub fn decimate(
     goal: Decimation,
     task: &Task,
 ) -> Result<Decimated, MeshError> {
-    let end = goal.end()?;
+    let error_mm = (goal.error_mm)
+        .map(|error_mm| MeshError::length("error bound", error_mm))
+        .transpose()?;
+    let all = if error_mm.is_some() { 0 } else { usize::MAX };
+    let end = goal.triangles.unwrap_or(all);
     let given = mesh.as_written()?;
     let triangles = given.triangles().len();
     if triangles > MOST_TRIANGLES {
         return Err(MeshError::TooManyToDecimate { triangles });
     }
     let stars = || Stars::new(given.vertices_mm().len(), given.triangles());
-    let mut holds = holds(&stars(), task)?;
+    let mut bounds = Bounds::new(&stars(), error_mm, task)?;
     let mut steps = Vec::new();
-    let mut comparison = Comparison::new(&given, goal.error_mm, task)?;
-    let mut held_vertices = 0;
+    let mut is_narrower = Vec::new();
+    let mut comparison = Comparison::new(&given, error_mm, task)?;
     for round in 0.. {
-        task.begin("decimate", triangles.saturating_sub(end.triangles));
-        let mut run = Run::new(&given, stars(), &holds, task)?;
+        task.begin("decimate", triangles.saturating_sub(end));
+        let mut run = Run::new(&given, stars(), &bounds, task)?;
         if round == 0 {
             run.collapse_in_blocks(end, task)?;
             run.collapse(end, None, task)?;
         } else {
-            let is_other = run.repeat(&steps, task)?;
+            let is_other = run.repeat(&steps, &is_narrower, task)?;
             // A number is reached wherever it costs least; an error bound, only beside what changed.
-            let at = (end.triangles == 0).then_some(&*is_other);
+            let at = (end == 0).then_some(&*is_other);
             run.collapse(end, at, task)?;
         }
         let standing = run.standing();
         steps = run.steps;
         let result = TriangleMesh::new(run.vertices_mm, run.stars.triangles().collect())?;
-        let is_faulty = comparison.faulty_vertices(&result, &standing, task)?;
-        let mut more = 0;
-        for (hold, &stands) in holds.iter_mut().zip(&standing) {
-            if is_faulty[stands as usize] && *hold != Hold::Star {
-                *hold = Hold::Star;
-                more += 1;
-            }
-        }
-        held_vertices += more;
-        if more == 0 {
-            let mesh = result.compacted();
+        let faults = comparison.faults(&result, &run.stars, &standing, task)?;
+        is_narrower = bounds.narrowed(&faults, &standing);
+        if !is_narrower.contains(&true) {
             return Ok(Decimated {
-                mesh,
-                held_vertices,
+                mesh: result.compacted(),
+                held_vertices: bounds.held,
             });
         }
-        comparison.remember(result);
+        comparison.remember(result, standing);
     }
-    unreachable!("each round holds more vertices, and there is an end to them: going on is a bug")
-}
-
-impl Decimation {
-    /// Where collapsing ends.
-    fn end(self) -> Result<End, MeshError> {
-        let mean_squared = match self.error_mm {
-            Some(error_mm) => (TYPICAL * MeshError::length("error bound", error_mm)?).powi(2),
-            None => f64::INFINITY,
-        };
-        let all = match self.error_mm {
-            Some(_) => 0,
-            None => usize::MAX,
-        };
-        Ok(End {
-            triangles: self.triangles.unwrap_or(all),
-            mean_squared,
-        })
-    }
+    unreachable!("each round narrows bounds, and there is an end to them: going on is a bug")
 }

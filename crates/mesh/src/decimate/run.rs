@@ -6,10 +6,12 @@ use std::collections::BinaryHeap;
 use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;
 
+use super::bounds::{Bounds, Hold};
 use super::collapse::Surroundings;
+use super::points::Points;
 use super::quadric::Quadric;
 use crate::TriangleMesh;
-use crate::stars::{MOST, Stars};
+use crate::stars::Stars;
 use crate::vector::{Vector, dot, minus};
 
 /// Collapses or triangles between two looks at the cancel switch.
@@ -18,19 +20,11 @@ const STRIDE: usize = 1 << 12;
 const TIERS: usize = 8;
 /// What the length of an edge adds to its cost, so that short edges go first where all is flat.
 const LENGTH_COST: f64 = 1e-6;
+/// Part of a vertex's limit that the mean distance to the planes it stands for may reach: with more,
+/// much is found to be too far and done again; with less, triangles stay that could go.
+const TYPICAL: f64 = 0.5;
 /// The version of a vertex that is gone; no other comes near it.
 const GONE: u32 = u32::MAX / 2;
-
-/// What may be done with a vertex.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Hold {
-    /// It may move and go.
-    Free,
-    /// It stays in its place, but neighbours may collapse onto it.
-    Place,
-    /// It stays with all triangles at it.
-    Star,
-}
 
 /// One collapse, as it was done.
 #[derive(Clone, Copy)]
@@ -40,15 +34,6 @@ pub(super) struct Step {
     pub(super) place: Vector,
     /// What it cost, as in its entry.
     pub(super) cost: f32,
-}
-
-/// Where collapsing ends.
-#[derive(Clone, Copy)]
-pub(super) struct End {
-    /// No collapse below this many triangles.
-    pub(super) triangles: usize,
-    /// Largest mean squared distance (mm2) of a vertex to the planes it stands for.
-    pub(super) mean_squared: f64,
 }
 
 /// A mesh on its way to fewer triangles.
@@ -61,6 +46,10 @@ pub(super) struct Run<'a> {
     pub(super) quadrics: Vec<Quadric>,
     /// How often each vertex has changed.
     pub(super) versions: Vec<u32>,
+    /// How far (mm2, squared) the surface may come away from what each vertex stands for.
+    pub(super) limits: Vec<f64>,
+    /// What each vertex stands for, where there are limits.
+    pub(super) points: Option<Points>,
     pub(super) steps: Vec<Step>,
 }
 
@@ -68,7 +57,7 @@ impl<'a> Run<'a> {
     pub(super) fn new(
         mesh: &TriangleMesh,
         stars: Stars,
-        holds: &'a [Hold],
+        bounds: &'a Bounds,
         task: &Task,
     ) -> Result<Self, Cancelled> {
         let vertices_mm = mesh.vertices_mm().to_vec();
@@ -89,9 +78,11 @@ impl<'a> Run<'a> {
             task.check()
         })?;
         Ok(Self {
-            holds,
+            holds: &bounds.holds,
             middle,
             versions: vec![0; vertices_mm.len()],
+            points: (bounds.error_mm).map(|_| Points::new(vertices_mm.clone())),
+            limits: bounds.limits.clone(),
             vertices_mm,
             stars,
             quadrics,
@@ -99,31 +90,49 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// Does the steps of an earlier run again, except where something is held now that was not
-    /// then, and where the surroundings therefore differ. Gives the vertices for which that is so.
-    pub(super) fn repeat(&mut self, steps: &[Step], task: &Task) -> Result<Vec<bool>, Cancelled> {
-        let mut is_other: Vec<bool> = self.holds.iter().map(|h| *h == Hold::Star).collect();
+    /// Does the steps of an earlier run again, except those that narrower bounds forbid, and those where
+    /// the surroundings therefore differ. Gives the vertices for which that is so.
+    pub(super) fn repeat(
+        &mut self,
+        steps: &[Step],
+        is_narrower: &[bool],
+        task: &Task,
+    ) -> Result<Vec<bool>, Cancelled> {
+        let mut other = Others::new(self.holds.len());
+        for (vertex, hold) in (0..).zip(self.holds) {
+            if is_narrower[vertex as usize] && *hold == Hold::Star {
+                other.add(vertex, &self.stars);
+            }
+        }
+        let mut is_narrower = is_narrower.to_vec();
         let mut surroundings = Surroundings::default();
         for (number, &step) in steps.iter().enumerate() {
             if number % STRIDE == 0 {
                 task.check()?;
             }
-            surroundings.load(&self.stars, step.kept, step.gone);
-            if surroundings.around().any(|v| is_other[v as usize]) {
-                is_other[step.kept as usize] = true;
-                is_other[step.gone as usize] = true;
+            let ends = [step.kept, step.gone];
+            let is_asked = ends.iter().any(|v| is_narrower[*v as usize]);
+            let is_allowed = |run: &Self, surroundings: &mut Surroundings| {
+                let entry = run.entry(step.kept, step.gone);
+                entry.is_some_and(|entry| run.allowed(entry, surroundings).is_some())
+            };
+            if other.are_near(ends) || is_asked && !is_allowed(self, &mut surroundings) {
+                for vertex in ends {
+                    other.add(vertex, &self.stars);
+                }
             } else {
+                is_narrower[step.kept as usize] = is_asked;
                 self.apply(step);
             }
         }
-        Ok(is_other)
+        Ok(other.is_other)
     }
 
     /// Collapses edges until the end is reached or none can be collapsed any more; if `at` is given,
     /// looks only at edges with one of those vertices.
     pub(super) fn collapse(
         &mut self,
-        end: End,
+        end: usize,
         at: Option<&[bool]>,
         task: &Task,
     ) -> Result<(), Cancelled> {
@@ -132,16 +141,16 @@ impl<'a> Run<'a> {
             self.sweep(end, at, task)?;
             // What was refused may be possible now; a last handful is not worth another sweep.
             let done = self.steps.len() - before;
-            if self.stars.alive() <= end.triangles || done <= self.stars.alive() / 1000 {
+            if self.stars.alive() <= end || done <= self.stars.alive() / 1000 {
                 return Ok(());
             }
         }
     }
 
     /// Looks at each edge once, and again when one of its ends has changed.
-    fn sweep(&mut self, end: End, at: Option<&[bool]>, task: &Task) -> Result<(), Cancelled> {
-        let mut known = self.edges(end, at, task)?;
-        while !known.is_empty() && self.stars.alive() > end.triangles {
+    fn sweep(&mut self, end: usize, at: Option<&[bool]>, task: &Task) -> Result<(), Cancelled> {
+        let mut known = self.edges(at, task)?;
+        while !known.is_empty() && self.stars.alive() > end {
             // In tiers of rising cost, so that the heap stays small: the order is the same.
             let tier = known[known.len() / TIERS];
             let begun = known.partition_point(|entry| *entry <= tier);
@@ -161,7 +170,7 @@ impl<'a> Run<'a> {
         known: &[u128],
         last: u128,
         later: &mut Vec<u128>,
-        end: End,
+        end: usize,
         task: &Task,
     ) -> Result<(), Cancelled> {
         let mut known = known.iter().copied().peekable();
@@ -169,7 +178,7 @@ impl<'a> Run<'a> {
         let mut surroundings = Surroundings::default();
         let mut star = Vec::new();
         let mut looked = 0;
-        while self.stars.alive() > end.triangles {
+        while self.stars.alive() > end {
             let next = match (known.peek(), changed.peek()) {
                 (Some(a), Some(Reverse(b))) if b < a => changed.pop().map(|c| c.0),
                 (None, _) => changed.pop().map(|c| c.0),
@@ -190,7 +199,7 @@ impl<'a> Run<'a> {
             task.advance(2)?;
             self.stars.at(step.kept, &mut star);
             let beside = star.iter().map(|t| t[1]);
-            for entry in beside.filter_map(|v| self.entry(step.kept, v, end)) {
+            for entry in beside.filter_map(|v| self.entry(step.kept, v)) {
                 if entry <= last {
                     changed.push(Reverse(entry));
                 } else {
@@ -208,7 +217,7 @@ impl<'a> Run<'a> {
     }
 
     /// All edges that may be worth collapsing, the cheapest first.
-    fn edges(&self, end: End, at: Option<&[bool]>, task: &Task) -> Result<Vec<u128>, Cancelled> {
+    fn edges(&self, at: Option<&[bool]>, task: &Task) -> Result<Vec<u128>, Cancelled> {
         let triangles: Vec<[u32; 3]> = self.stars.triangles().collect();
         let chunks = triangles
             .par_chunks(STRIDE)
@@ -219,7 +228,7 @@ impl<'a> Run<'a> {
                 // Where both triangles of an edge face the same way, each runs along it once.
                 let is_asked = |v: u32| at.is_none_or(|at| at[v as usize]);
                 let edges = edges.filter(|&[u, v]| u < v && (is_asked(u) || is_asked(v)));
-                let entries: Vec<u128> = edges.filter_map(|[u, v]| self.entry(u, v, end)).collect();
+                let entries: Vec<u128> = edges.filter_map(|[u, v]| self.entry(u, v)).collect();
                 task.check()?;
                 Ok(entries)
             })
@@ -230,10 +239,10 @@ impl<'a> Run<'a> {
     }
 
     /// An edge's place in the order: cost, ends, and how often the ends had changed.
-    fn entry(&self, u: u32, v: u32, end: End) -> Option<u128> {
+    fn entry(&self, u: u32, v: u32) -> Option<u128> {
         let (u, v) = (u.min(v), u.max(v));
         let (_, cost, weight) = self.best(u, v)?;
-        if cost > end.mean_squared * weight {
+        if cost > TYPICAL * TYPICAL * self.limit(u, v) * weight {
             return None;
         }
         let edge = minus(self.vertices_mm[u as usize], self.vertices_mm[v as usize]);
@@ -241,6 +250,11 @@ impl<'a> Run<'a> {
         // Singles from 0 up are in the order of their bits.
         let [cost, u128_u, u128_v] = [cost.to_bits(), u, v].map(u128::from);
         Some(cost << 96 | u128_u << 64 | u128_v << 32 | u128::from(self.stamp(u, v)))
+    }
+
+    /// How far (mm2, squared) the surface may come away from what these two stand for.
+    pub(super) fn limit(&self, u: u32, v: u32) -> f64 {
+        self.limits[u as usize].min(self.limits[v as usize])
     }
 
     fn stamp(&self, u: u32, v: u32) -> u32 {
@@ -283,7 +297,8 @@ impl<'a> Run<'a> {
         let is_held = |v: u32| self.holds[v as usize] == Hold::Star;
         (surroundings.keeps_topology(kept, gone)
             && !surroundings.around().any(is_held)
-            && surroundings.keeps_shape(&self.vertices_mm, [kept, gone], place))
+            && surroundings.keeps_shape(&self.vertices_mm, [kept, gone], place)
+            && self.stays_near(surroundings, [kept, gone], place))
         .then_some(Step {
             kept,
             gone,
@@ -296,6 +311,10 @@ impl<'a> Run<'a> {
         let [kept, gone] = [step.kept as usize, step.gone as usize];
         self.stars.collapse(step.kept, step.gone);
         self.quadrics[kept] = self.quadrics[kept].plus(&self.quadrics[gone]);
+        self.limits[kept] = self.limits[kept].min(self.limits[gone]);
+        if let Some(points) = &mut self.points {
+            points.join(step.kept, step.gone);
+        }
         self.vertices_mm[kept] = step.place;
         self.versions[kept] += 1;
         self.versions[gone] = GONE;
@@ -313,6 +332,37 @@ impl<'a> Run<'a> {
     }
 }
 
+/// Vertices that are not as they were in an earlier run.
+struct Others {
+    is_other: Vec<bool>,
+    /// Whether a vertex is one or has one as its neighbour. None of them goes, so none is lost.
+    is_near: Vec<bool>,
+    star: Vec<[u32; 3]>,
+}
+
+impl Others {
+    fn new(vertices: usize) -> Self {
+        Self {
+            is_other: vec![false; vertices],
+            is_near: vec![false; vertices],
+            star: Vec::new(),
+        }
+    }
+
+    fn add(&mut self, vertex: u32, stars: &Stars) {
+        if !std::mem::replace(&mut self.is_other[vertex as usize], true) {
+            stars.at(vertex, &mut self.star);
+            for near in self.star.as_flattened() {
+                self.is_near[*near as usize] = true;
+            }
+        }
+    }
+
+    fn are_near(&self, vertices: [u32; 2]) -> bool {
+        vertices.iter().any(|v| self.is_near[*v as usize])
+    }
+}
+
 /// The ends of an entry's edge.
 fn ends(entry: u128) -> [u32; 2] {
     [(entry >> 64) as u32, (entry >> 32) as u32]
@@ -321,22 +371,4 @@ fn ends(entry: u128) -> [u32; 2] {
 /// The nearest number that a file can hold.
 fn single(value: f64) -> f64 {
     f64::from(value as f32)
-}
-
-/// What may be done with each vertex: only those with one closed fan of triangles are free.
-pub(super) fn holds(stars: &Stars, task: &Task) -> Result<Vec<Hold>, Cancelled> {
-    let is_closed = stars.closed_fans(task)?;
-    let mut star = Vec::new();
-    let hold = |(vertex, is_closed): (u32, bool)| {
-        if is_closed {
-            return Hold::Free;
-        }
-        stars.at(vertex, &mut star);
-        if star.len() > MOST {
-            Hold::Star
-        } else {
-            Hold::Place
-        }
-    };
-    Ok((0..).zip(is_closed).map(hold).collect())
 }

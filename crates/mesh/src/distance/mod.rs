@@ -3,5 +3,5 @@
 mod near;
 mod point;
 
-pub(crate) use near::Near;
-pub(crate) use point::squared_distance;
+pub(crate) use near::{Near, is_near};
+pub(crate) use point::{is_within, squared_distance};

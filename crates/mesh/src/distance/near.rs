@@ -1,6 +1,6 @@
 //! Is all of a triangle within a distance of a surface?
 
-use super::squared_distance;
+use super::{is_within, squared_distance};
 use crate::tree::{Bounds, TriangleTree};
 use crate::vector::{Vector, cross, dot, minus, plus_scaled};
 
@@ -29,36 +29,15 @@ impl<'a> Near<'a> {
     /// Whether a point is within the distance.
     pub(crate) fn holds_point(&mut self, point: Vector) -> bool {
         let limit = self.distance_mm * self.distance_mm;
-        self.look_around(&[point], |other| squared_distance(point, *other) <= limit)
+        self.look_around(&[point], |other| is_within(point, *other, limit))
     }
 
     /// Whether all points of a triangle are within the distance; a no may be wrong by a hair.
-    ///
-    /// The distance to one triangle is convex, so a piece whose corners are all near the same one is
-    /// near it as a whole; a piece that lies over several is cut at their borders.
     pub(crate) fn holds_triangle(&mut self, corners: [Vector; 3]) -> bool {
         let limit = self.distance_mm * self.distance_mm;
-        let is_near = |other: &[Vector; 3]| {
-            corners
-                .iter()
-                .all(|&corner| squared_distance(corner, *other) <= limit)
-        };
-        if self.look_around(&corners, is_near) {
-            return true;
-        }
-        let mut cuts = MOST_CUTS;
-        is_covered(
-            &self.nearby,
-            self.nearby.clone(),
-            corners.to_vec(),
-            limit,
-            &mut cuts,
-        )
-    }
-
-    /// Whether the box of any triangle comes within the distance of the points' box.
-    pub(crate) fn reaches(&mut self, points: &[Vector]) -> bool {
-        self.look_around(points, |_| true)
+        let piece = Piece::of(corners);
+        let is_whole = |other: &[Vector; 3]| piece.is_near(other, limit);
+        self.look_around(&corners, is_whole) || is_near(corners, &self.nearby, self.distance_mm)
     }
 
     /// Finds the triangles whose boxes come within the distance of the points' box, until one is
@@ -99,72 +78,147 @@ impl<'a> Near<'a> {
     }
 }
 
-/// Whether pieces of `piece`, each near one of `all`, make up the whole of it.
-///
-/// What lies above or below the nearest triangle of `rest` is near it or not; what lies beside it is
-/// for the others to cover. Each cut takes one triangle off `rest`, so it comes to an end.
-fn is_covered(
-    all: &[[Vector; 3]],
-    mut rest: Vec<[Vector; 3]>,
-    piece: Vec<Vector>,
-    limit: f64,
-    cuts: &mut u32,
-) -> bool {
-    let holds = |other: &[Vector; 3], piece: &[Vector]| {
-        piece
-            .iter()
-            .all(|&corner| squared_distance(corner, *other) <= limit)
-    };
-    if all.iter().any(|other| holds(other, &piece)) {
+/// Whether all points of a triangle are this near some `others`; a no may be wrong by a hair.
+pub(crate) fn is_near(corners: [Vector; 3], others: &[[Vector; 3]], distance_mm: f64) -> bool {
+    let limit = distance_mm * distance_mm;
+    let piece = Piece::of(corners);
+    if others.iter().any(|o| piece.is_near(o, limit)) {
         return true;
     }
-    let centre = [0, 1, 2]
-        .map(|axis| piece.iter().map(|corner| corner[axis]).sum::<f64>() / piece.len() as f64);
-    let distances = rest
+    // No point of the triangle is near what is further from its centre than this.
+    let centre = piece.centre();
+    let away = corners.map(|corner| minus(corner, centre));
+    let radius = away
+        .map(|a| dot(a, a))
+        .into_iter()
+        .fold(0.0, f64::max)
+        .sqrt();
+    let reach = radius + distance_mm;
+    let reachable = others
         .iter()
-        .map(|other| squared_distance(centre, *other))
-        .enumerate();
-    let Some((nearest, _)) = distances.min_by(|a, b| a.1.total_cmp(&b.1)) else {
-        return false;
+        .filter(|o| is_within(centre, **o, reach * reach));
+    let mut reachable: Vec<[Vector; 3]> = reachable.copied().collect();
+    reachable.sort_by_cached_key(|o| squared_distance(centre, *o).to_bits());
+    let mut covering = Covering {
+        all: &reachable,
+        limit,
+        cuts: MOST_CUTS,
     };
-    if *cuts == 0 {
-        return false;
-    }
-    *cuts -= 1;
-    let nearest = rest.swap_remove(nearest);
-    let [a, b, c] = nearest;
-    let normal = cross(minus(b, a), minus(c, a));
-    let mut within = piece;
-    for (from, to) in [(a, b), (b, c), (c, a)] {
-        let outward = cross(minus(to, from), normal);
-        let height = |place: Vector| dot(minus(place, from), outward);
-        let beside = part_above(&within, height);
-        within = part_above(&within, |place| -height(place));
-        if beside.len() > 2 && !is_covered(all, rest.clone(), beside, limit, cuts) {
-            return false;
-        }
-    }
-    within.len() < 3 || all.iter().any(|other| holds(other, &within))
+    covering.is_whole(&piece, &reachable)
 }
 
-/// The part of a convex piece where a linear function is not below 0.
-fn part_above(piece: &[Vector], height: impl Fn(Vector) -> f64) -> Vec<Vector> {
-    let mut part = Vec::with_capacity(piece.len() + 1);
-    for (number, &corner) in piece.iter().enumerate() {
-        let next = piece[(number + 1) % piece.len()];
-        let (here, there) = (height(corner), height(next));
-        if here >= 0.0 {
-            part.push(corner);
+/// Triangles that are to be near a whole piece.
+///
+/// The distance to one triangle is convex, so a piece whose corners are all near the same one is near
+/// it as a whole; a piece that lies over several is cut at their borders.
+struct Covering<'a> {
+    all: &'a [[Vector; 3]],
+    limit: f64,
+    /// How many cuts are left.
+    cuts: u32,
+}
+
+impl Covering<'_> {
+    /// Whether parts of `piece`, each near one of all, make up the whole of it.
+    ///
+    /// What lies above or below the first of `rest` is near one of all or not; what lies beside it is
+    /// cut by the others. Each cut takes one triangle off `rest`, so it comes to an end.
+    fn is_whole(&mut self, piece: &Piece, rest: &[[Vector; 3]]) -> bool {
+        if self
+            .all
+            .iter()
+            .any(|other| piece.is_near(other, self.limit))
+        {
+            return true;
         }
-        if here < 0.0 && there > 0.0 || here > 0.0 && there < 0.0 {
-            part.push(plus_scaled(
-                corner,
-                here / (here - there),
-                minus(next, corner),
-            ));
+        let Some((&[a, b, c], rest)) = rest.split_first() else {
+            return false;
+        };
+        if self.cuts == 0 {
+            return false;
         }
+        self.cuts -= 1;
+        let normal = cross(minus(b, a), minus(c, a));
+        let mut within = *piece;
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            let outward = cross(minus(to, from), normal);
+            let height = |place: Vector| dot(minus(place, from), outward);
+            let (Some(beside), Some(below)) = (
+                within.part_above(height),
+                within.part_above(|place| -height(place)),
+            ) else {
+                return false;
+            };
+            if beside.count > 2 && !self.is_whole(&beside, rest) {
+                return false;
+            }
+            within = below;
+        }
+        within.count < 3
+            || self
+                .all
+                .iter()
+                .any(|other| within.is_near(other, self.limit))
     }
-    part
+}
+
+/// Most corners of a piece; one with more counts as far.
+const MOST_CORNERS: usize = 12;
+
+/// A convex part of a triangle.
+#[derive(Clone, Copy)]
+struct Piece {
+    corners: [Vector; MOST_CORNERS],
+    count: usize,
+}
+
+impl Piece {
+    fn of(triangle: [Vector; 3]) -> Self {
+        let mut corners = [[0.0; 3]; MOST_CORNERS];
+        corners[..3].copy_from_slice(&triangle);
+        Self { corners, count: 3 }
+    }
+
+    fn corners(&self) -> &[Vector] {
+        &self.corners[..self.count]
+    }
+
+    /// Whether all corners are this near (squared) a triangle.
+    fn is_near(&self, triangle: &[Vector; 3], limit: f64) -> bool {
+        self.corners()
+            .iter()
+            .all(|&corner| is_within(corner, *triangle, limit))
+    }
+
+    fn centre(&self) -> Vector {
+        let sum = |axis: usize| self.corners().iter().map(|c| c[axis]).sum::<f64>();
+        [0, 1, 2].map(|axis| sum(axis) / self.count as f64)
+    }
+
+    /// The part where a linear function is not below 0; `None` if it has too many corners.
+    fn part_above(&self, height: impl Fn(Vector) -> f64) -> Option<Self> {
+        let mut part = Self {
+            corners: [[0.0; 3]; MOST_CORNERS],
+            count: 0,
+        };
+        let mut add = |corner: Vector| {
+            *part.corners.get_mut(part.count)? = corner;
+            part.count += 1;
+            Some(())
+        };
+        for (number, &corner) in self.corners().iter().enumerate() {
+            let next = self.corners[(number + 1) % self.count];
+            let (here, there) = (height(corner), height(next));
+            if here >= 0.0 {
+                add(corner)?;
+            }
+            if here < 0.0 && there > 0.0 || here > 0.0 && there < 0.0 {
+                let way = here / (here - there);
+                add(plus_scaled(corner, way, minus(next, corner)))?;
+            }
+        }
+        Some(part)
+    }
 }
 
 #[cfg(test)]

@@ -19,6 +19,30 @@ pub(crate) fn squared_distance(point: Vector, [a, b, c]: [Vector; 3]) -> f64 {
     to_edge(a, b).min(to_edge(b, c)).min(to_edge(c, a))
 }
 
+/// Whether [`squared_distance`] is at most `limit` (mm2); most of those that are far are told quickly.
+pub(crate) fn is_within(point: Vector, [a, b, c]: [Vector; 3], limit: f64) -> bool {
+    let normal = cross(minus(b, a), minus(c, a));
+    let squared_length = dot(normal, normal);
+    let height = dot(minus(point, a), normal);
+    if height * height > limit * squared_length {
+        return false;
+    }
+    let is_beside =
+        |from: Vector, to: Vector| dot(cross(minus(to, from), minus(point, from)), normal) < 0.0;
+    let is_flat = squared_length <= 0.0;
+    let mut is_over = !is_flat;
+    for (from, to) in [(a, b), (b, c), (c, a)] {
+        // What is beside the triangle is nearest to an edge beside which it is.
+        if is_flat || is_beside(from, to) {
+            is_over = false;
+            if squared_distance_to_segment(point, from, to) <= limit {
+                return true;
+            }
+        }
+    }
+    is_over
+}
+
 fn squared_distance_to_segment(point: Vector, from: Vector, to: Vector) -> f64 {
     let (along, there) = (minus(to, from), minus(point, from));
     let squared_length = dot(along, along);
@@ -36,6 +60,26 @@ mod tests {
     use super::*;
 
     const FLOOR: [Vector; 3] = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
+
+    #[test]
+    fn within_says_the_same_as_the_distance() {
+        let needle = [[0.0; 3], [4.0, 0.0, 0.0], [2.0, 0.0, 0.0]];
+        let slanted = [[0.3, -1.0, 0.2], [2.5, 0.4, 1.0], [-0.5, 1.7, -0.6]];
+        for i in 0..1000 {
+            let point = [0, 1, 2].map(|axis| f64::from(i / 10_i32.pow(axis) % 10) * 0.7 - 2.0);
+            for corners in [FLOOR, needle, slanted, [[1.0; 3]; 3]] {
+                let squared = squared_distance(point, corners);
+                assert!(
+                    is_within(point, corners, squared * 1.0001 + 1e-12),
+                    "{point:?}"
+                );
+                assert!(
+                    !is_within(point, corners, squared * 0.9999 - 1e-12),
+                    "{point:?}"
+                );
+            }
+        }
+    }
 
     #[test]
     fn face_edges_and_corners_are_each_nearest_once() {
