@@ -1,7 +1,8 @@
-//! What the tests of geometry share.
+//! What the tests share.
 
 #![allow(dead_code, reason = "each test file uses its part")]
 
+pub(crate) mod command;
 pub(crate) mod distance;
 
 use bonemesh::{HuThreshold, Method, Settings, TriangleMesh, Volume, Voxels};
