@@ -4,6 +4,7 @@
 
 pub(crate) mod command;
 pub(crate) mod distance;
+pub(crate) mod femur;
 
 use bonemesh::{HuThreshold, Method, Settings, TriangleMesh, Volume, Voxels};
 use bonemesh_phantom::Body;
