@@ -129,6 +129,14 @@ pub enum SurfaceError {
         /// The threshold asked for.
         threshold_hu: f64,
     },
+    /// Voxels are bone, but a surface encloses none of them.
+    #[error(
+        "what lies above {threshold_hu} HU is too small or too faint for a surface; lower the threshold, or take an isosurface at the threshold itself"
+    )]
+    TooSmall {
+        /// The threshold asked for.
+        threshold_hu: f64,
+    },
     /// More vertices than an index can name.
     #[error("the surface has more than 4 billion vertices; crop the volume")]
     TooLarge,

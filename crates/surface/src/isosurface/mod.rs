@@ -58,7 +58,8 @@ impl IsosurfaceSettings {
 /// is outside and none lies on the surface. The stages are `edges` and `surface`.
 ///
 /// # Errors
-/// [`SurfaceError::NothingAbove`], [`SurfaceError::TooLarge`], [`SurfaceError::Cancelled`].
+/// [`SurfaceError::NothingAbove`], [`SurfaceError::TooSmall`], [`SurfaceError::TooLarge`],
+/// [`SurfaceError::Cancelled`].
 pub fn isosurface(
     volume: &Volume,
     settings: IsosurfaceSettings,
@@ -88,9 +89,23 @@ pub fn isosurface(
             }),
         }
     };
-    mesh?.ok_or(SurfaceError::NothingAbove {
-        threshold_hu: settings.threshold_hu,
-    })
+    mesh?.ok_or_else(|| nothing(volume, settings))
+}
+
+/// Why there is no surface: no voxel is above the threshold, or those that are do not reach the
+/// grey of their own edges.
+pub(crate) fn nothing(volume: &Volume, settings: IsosurfaceSettings) -> SurfaceError {
+    let threshold = threshold(volume, settings);
+    let is_any_above = match volume.voxels() {
+        Voxels::I16(hu) => hu.iter().any(|&hu| f32::from(hu) > threshold),
+        Voxels::F32(hu) => hu.iter().any(|&hu| hu > threshold),
+    };
+    let threshold_hu = settings.threshold_hu;
+    if is_any_above {
+        SurfaceError::TooSmall { threshold_hu }
+    } else {
+        SurfaceError::NothingAbove { threshold_hu }
+    }
 }
 
 /// Columns, rows, slices.
