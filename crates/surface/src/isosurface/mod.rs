@@ -27,7 +27,7 @@ use rayon::prelude::*;
 
 use crate::SurfaceError;
 use cut::Crossing;
-use grey::{Grey, Voxel};
+use grey::{Grey, Voxel, usable};
 use march::{Rows, cut_edges, triangles};
 use signs::Signs;
 
@@ -114,12 +114,12 @@ pub(crate) fn shape(volume: &Volume) -> [usize; 3] {
     [columns, rows, slices]
 }
 
-/// Voxels in the order slice, row, column, whatever order they are stored in.
+/// Usable voxels in the order slice, row, column, whatever order they are stored in.
 fn in_order<T: Voxel, R>(hu: &Array3<T>, of: impl FnOnce(&Grey<'_, T>) -> R) -> R {
     let (slices, rows, columns) = hu.dim();
     let hu = hu.as_standard_layout();
     let hu = hu.as_slice().expect("in order, else it is a bug");
-    of(&Grey::new(hu, [columns, rows, slices]))
+    of(&Grey::new(&usable(hu), [columns, rows, slices]))
 }
 
 /// The threshold, above all of its whole numbers: so none of them lies just on the surface.
