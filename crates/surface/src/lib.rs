@@ -83,6 +83,7 @@ mod isosurface;
 mod labelled;
 mod planar;
 mod poisson;
+mod sorted;
 #[cfg(test)]
 mod synthetic;
 mod tetrahedra;
