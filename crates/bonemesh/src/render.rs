@@ -185,10 +185,12 @@ fn in_words(error: SurfaceError, volume: &Volume) -> Error {
 
 /// Refuses a threshold below all voxels: the surface would be the box around them.
 fn refuse_all_bone(volume: &Volume, threshold_hu: f64) -> Result<(), Error> {
-    // The first voxel of most scans is air.
+    // The first voxel of most scans is air. What is no number is no bone.
     let is_left = match volume.voxels() {
         Voxels::I16(hu) => hu.iter().any(|&hu| f64::from(hu) <= threshold_hu),
-        Voxels::F32(hu) => hu.iter().any(|&hu| f64::from(hu) <= threshold_hu),
+        Voxels::F32(hu) => hu
+            .iter()
+            .any(|&hu| hu.is_nan() || f64::from(hu) <= threshold_hu),
     };
     if is_left {
         return Ok(());

@@ -1,57 +1,15 @@
-//! The `bonemesh` command as a user runs it: files in, files out, exit codes, one line on failure.
+//! The `bonemesh` command as a user runs it: files in, files out, what it says.
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-use std::sync::LazyLock;
+mod common;
 
+use std::fs;
+use std::path::Path;
+
+use common::command::{assert_refused, bonemesh, head, json, text};
 use serde_json::Value;
 use tempfile::TempDir;
-
-/// A phantom head, coarse enough for a quick test, made once.
-static HEAD: LazyLock<TempDir> = LazyLock::new(|| {
-    let folder = TempDir::new().unwrap();
-    let series = folder.path().join("head");
-    let made = bonemesh(&["phantom", "head", text(&series), "--coarser", "2"]);
-    assert!(made.status.success(), "{}", message(&made));
-    folder
-});
-
-fn bonemesh(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_bonemesh"))
-        .args(arguments)
-        .output()
-        .unwrap()
-}
-
-fn text(path: &Path) -> &str {
-    path.to_str().unwrap()
-}
-
-fn message(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
-}
-
-fn json(output: &Output) -> Value {
-    assert!(output.status.success(), "{}", message(output));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-fn head() -> PathBuf {
-    HEAD.path().join("head")
-}
-
-/// One line on stderr that begins with the program's name, exit code 1, nothing on stdout.
-fn assert_refused(output: &Output, word: &str) {
-    let said = message(output);
-    assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.starts_with("bonemesh: "), "{said}");
-    assert_eq!(said.trim_end().lines().count(), 1, "{said}");
-    assert!(said.contains(word), "{said} has no {word}");
-    assert!(output.stdout.is_empty());
-}
 
 #[test]
 fn a_folder_becomes_a_mesh_with_a_full_report() {
@@ -119,6 +77,32 @@ fn without_a_method_the_surface_is_ready_to_print() {
     let check = json(&bonemesh(&["check", out, "--json"]));
     assert_eq!(check["printable"], true, "{check}");
     assert_eq!(check["components"], report["components"]);
+}
+
+#[test]
+fn the_threshold_goes_by_three_names() {
+    let folder = TempDir::new().unwrap();
+    let stl = folder.path().join("bone.stl");
+    let scan = head();
+    let threshold = |option: &[&str]| {
+        let arguments = ["render", text(&scan), "-o", text(&stl), "--json"];
+        json(&bonemesh(&[&arguments, option].concat()))["threshold_hu"].clone()
+    };
+    for option in [["--hu", "500"], ["--threshold", "500"], ["-t", "500"]] {
+        assert_eq!(threshold(&option), 500.0, "{option:?}");
+    }
+    assert_eq!(
+        threshold(&["-t", "cortical"]),
+        threshold(&["--hu=cortical"])
+    );
+    let below_air = bonemesh(&["render", text(&scan), "-o", text(&stl), "-t", "-2000"]);
+    assert_refused(&below_air, "HU");
+    let help = bonemesh(&["render", "--help"]).stdout;
+    let help = String::from_utf8(help).unwrap();
+    assert!(
+        help.contains("-t, --hu <HU>") && help.contains("--threshold"),
+        "{help}"
+    );
 }
 
 #[test]
@@ -268,97 +252,6 @@ fn a_crop_box_keeps_its_place_in_the_patient() {
     assert!(part[0][2].as_f64() > whole[0][2].as_f64());
 }
 
-#[test]
-fn unusable_arguments_end_with_2() {
-    let bone = ["render", "x", "-o", "y.stl"];
-    for extra in [
-        ["--hu", "bone"],
-        ["--hu", "nan"],
-        ["--sigma", "-1"],
-        ["--method", "magic"],
-        ["--alpha", "0"],
-        ["--sample", "101"],
-        ["--sample", "0"],
-        ["--sampler", "best"],
-        ["--crop", "1:2"],
-        ["--crop", "5:2,0:1,0:1"],
-        ["--threads", "0"],
-        ["--series", "first"],
-    ] {
-        let output = bonemesh(&[&bone[..], &extra[..]].concat());
-        assert_eq!(
-            output.status.code(),
-            Some(2),
-            "{extra:?}: {}",
-            message(&output)
-        );
-    }
-    let roi = ["roi", "x.stl", "-o", "y.stl", "--selection", "s.txt"];
-    for thickness in ["0", "-1", "nan", "thick"] {
-        let option = format!("--thickness={thickness}");
-        let output = bonemesh(&[&roi[..], &[option.as_str()]].concat());
-        assert_eq!(output.status.code(), Some(2), "{thickness}");
-    }
-    for command in ["cloud", "render"] {
-        let output = bonemesh(&[command, "x", "-o", "out.doc"]);
-        assert_eq!(output.status.code(), Some(2), "{command}");
-        assert!(message(&output).contains("out.doc"), "{command}");
-    }
-    assert_eq!(
-        bonemesh(&["phantom", "unicorn", "x"]).status.code(),
-        Some(2)
-    );
-    assert_eq!(bonemesh(&[]).status.code(), Some(2));
-    assert_eq!(bonemesh(&["--help"]).status.code(), Some(0));
-}
-
-#[test]
-fn folders_without_a_series_are_refused_in_one_line() {
-    let folder = TempDir::new().unwrap();
-    let out = folder.path().join("bone.stl");
-    let render = |from: &Path| bonemesh(&["render", text(from), "-o", text(&out)]);
-    let empty = folder.path().join("empty");
-    fs::create_dir(&empty).unwrap();
-    assert_refused(&render(&empty), "empty");
-    assert_refused(&render(&folder.path().join("missing")), "missing");
-    let file = folder.path().join("notes.txt");
-    fs::write(&file, "no image").unwrap();
-    assert_refused(&render(&file), "notes.txt");
-    fs::write(empty.join("scan.dcm"), "no image either").unwrap();
-    assert_refused(&render(&empty), "empty");
-    assert!(!out.exists());
-}
-
-#[test]
-fn thresholds_that_leave_nothing_are_refused_with_the_range_of_the_scan() {
-    let folder = TempDir::new().unwrap();
-    let out = folder.path().join("bone.stl");
-    for hu in ["--hu=3071", "--hu=-2000"] {
-        assert_refused(
-            &bonemesh(&["render", text(&head()), "-o", text(&out), hu]),
-            "HU",
-        );
-    }
-    assert!(!out.exists());
-}
-
-#[test]
-fn too_few_points_are_refused_with_what_made_them_few() {
-    let folder = TempDir::new().unwrap();
-    let out = folder.path().join("bone.stl");
-    let render = |option: &str| {
-        let method = "--method=alpha";
-        bonemesh(&["render", text(&head()), "-o", text(&out), method, option])
-    };
-    assert_refused(&render("--sample=0.0001"), "percentage");
-    assert_refused(&render("--sigma=100"), "sigma");
-    let cloud = folder.path().join("c.xyz");
-    fs::write(&cloud, "1 2 3\n".repeat(200)).unwrap();
-    let output = bonemesh(&["mesh", text(&cloud), "-o", text(&out)]);
-    assert_refused(&output, "its own place");
-    assert!(!out.exists());
-}
-
 #[cfg(unix)]
 #[test]
 fn folders_whose_names_are_no_unicode_are_reported() {
@@ -374,88 +267,6 @@ fn folders_whose_names_are_no_unicode_are_reported() {
     }
     let report = json(&bonemesh(&["info", text(folder.path()), "--json"]));
     assert_eq!(report["series"][0]["slices"], 73);
-}
-
-#[test]
-fn clouds_that_enclose_no_space_are_refused() {
-    let folder = TempDir::new().unwrap();
-    let (cloud, out) = (folder.path().join("c.xyz"), folder.path().join("m.stl"));
-    for points in [
-        "0 0 0\n1 0 0\n0 1 0\n",
-        "0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 5 0\n",
-        "0 0 0\n1 1 1\n2 2 2\n3 3 3\n",
-        "",
-        "0 0 zero\n",
-        "0 0 nan\n",
-    ] {
-        fs::write(&cloud, points).unwrap();
-        let output = bonemesh(&["mesh", text(&cloud), "-o", text(&out)]);
-        assert_refused(&output, "");
-    }
-    assert!(!out.exists());
-}
-
-#[test]
-fn outputs_that_cannot_be_written_are_refused_before_the_work() {
-    let folder = TempDir::new().unwrap();
-    let at = |name: &str| folder.path().join(name);
-    let render = |out: &Path| bonemesh(&["render", text(&head()), "-o", text(out)]);
-    assert_refused(&render(&at("none/bone.stl")), "none");
-    assert_eq!(render(&at("bone.docx")).status.code(), Some(2));
-    fs::create_dir(at("folder.stl")).unwrap();
-    assert_refused(&render(&at("folder.stl")), "folder.stl");
-    fs::remove_dir(at("folder.stl")).unwrap();
-    fs::write(at("kept.stl"), "mine").unwrap();
-    let mut permissions = fs::metadata(at("kept.stl")).unwrap().permissions();
-    permissions.set_readonly(true);
-    fs::set_permissions(at("kept.stl"), permissions).unwrap();
-    assert_refused(&render(&at("kept.stl")), "kept.stl");
-    assert_eq!(fs::read(at("kept.stl")).unwrap(), b"mine");
-    assert_eq!(
-        fs::read_dir(folder.path()).unwrap().count(),
-        1,
-        "nothing is left behind"
-    );
-}
-
-#[test]
-fn files_that_are_no_mesh_and_no_selection_are_refused() {
-    let folder = TempDir::new().unwrap();
-    let at = |name: &str| folder.path().join(name);
-    fs::write(at("bad.stl"), "this is no mesh").unwrap();
-    fs::write(at("sel.txt"), "0\n1\ntwo\n").unwrap();
-    assert_refused(&bonemesh(&["check", text(&at("bad.stl"))]), "bad.stl");
-    assert_refused(&bonemesh(&["check", text(&at("none.stl"))]), "none.stl");
-    let bone = at("bone.stl");
-    json(&bonemesh(&[
-        "render",
-        text(&head()),
-        "-o",
-        text(&bone),
-        "--json",
-    ]));
-    let out = at("region.stl");
-    let cut = |selection: &str| {
-        bonemesh(&[
-            "roi",
-            text(&bone),
-            selection,
-            "--thickness",
-            "5",
-            "-o",
-            text(&out),
-        ])
-    };
-    assert_refused(
-        &cut(&format!("--selection={}", text(&at("sel.txt")))),
-        "sel.txt",
-    );
-    for (lines, word) in [("", "sel.txt"), ("7\n", ""), ("4000000000\n", "4000000000")] {
-        fs::write(at("sel.txt"), lines).unwrap();
-        assert_refused(&cut(&format!("--selection={}", text(&at("sel.txt")))), word);
-    }
-    assert_refused(&cut("--within=5000,0,0,1"), "select");
-    assert!(!out.exists());
 }
 
 #[test]

@@ -6,100 +6,19 @@
 mod common;
 
 use std::collections::{HashMap, HashSet};
-use std::fs;
-use std::path::Path;
 use std::sync::{LazyLock, OnceLock};
 
 use bonemesh::{
     Frame, Phantom, Rendered, ScanSettings, Settings, Task, TriangleMesh, Volume, Voxels,
     point_cloud, read_mesh, render_volume, scan_phantom, write_mesh,
 };
-use bonemesh_dicom::{find_series, read_series};
-use bonemesh_phantom::{SeriesLabels, write_dicom_series};
 use common::distance::{Triangles, length, means, sampled};
+use common::femur::{
+    ALL_OTHERS, LANDMARKS, PARALLEL, PIXEL_MM, femur, mirrored_landmarks, settings,
+    written_and_read,
+};
 use common::{fit, halfway, interpolated};
 use ndarray::Array3;
-
-/// Side of the cubic voxels.
-const PIXEL_MM: f64 = 2.0;
-
-/// Columns of the grid along the patient's axes: the femur lies inside with room to spare.
-const COUNTS: [usize; 3] = [64, 60, 216];
-
-/// Orientations whose grids have the same voxel centres as the axial one.
-const PARALLEL: [&str; 7] = [
-    "reversed",
-    "feet-first",
-    "sagittal",
-    "coronal",
-    "prone",
-    "decubitus-left",
-    "decubitus-right",
-];
-
-const ALL_OTHERS: [&str; 3] = ["axial", "oblique", "tilted"];
-
-/// A femur without blur and noise, on voxels that are cubes.
-fn settings(orientation: &str) -> ScanSettings {
-    let settings = ScanSettings {
-        orientation: orientation.parse().unwrap(),
-        pixel_mm: [PIXEL_MM; 2],
-        slice_mm: PIXEL_MM,
-        ..Phantom::Femur.settings().ideal()
-    };
-    let o = &settings.orientation;
-    let directions = [o.column_direction, o.row_direction, o.slice_direction];
-    let [columns, rows, slices] = directions.map(|direction| {
-        let axis = direction.iter().position(|c| c.abs() > 0.999_999);
-        // A turned grid is larger, so that the bone stays inside.
-        axis.map_or(116, |axis| COUNTS[axis])
-    });
-    let slices = if PARALLEL.contains(&orientation) {
-        slices
-    } else {
-        COUNTS[2] + 40
-    };
-    ScanSettings {
-        columns,
-        rows,
-        slices: if orientation == "axial" {
-            COUNTS[2]
-        } else {
-            slices
-        },
-        ..settings
-    }
-}
-
-/// Writes `volume` as a series whose file names say nothing of the order.
-fn write_shuffled(volume: &Volume, folder: &Path, settings: &ScanSettings) {
-    let labels = SeriesLabels {
-        patient_position: settings.orientation.patient_position,
-        ..SeriesLabels::default()
-    };
-    let files = write_dicom_series(volume, folder, &labels, &Task::default()).unwrap();
-    for (k, file) in files.iter().enumerate() {
-        // A prime larger than any number of slices.
-        fs::rename(file, folder.join(format!("{:03}", (k + 1) * 389 % 997))).unwrap();
-    }
-}
-
-/// The volume that reading a written series gives.
-fn written_and_read(volume: &Volume, settings: &ScanSettings) -> Volume {
-    let folder = tempfile::tempdir().unwrap();
-    write_shuffled(volume, folder.path(), settings);
-    let task = Task::default();
-    let found = find_series(folder.path(), &task).unwrap();
-    let (volume, warnings) = read_series(found.choose(None).unwrap(), &task).unwrap();
-    assert!(warnings.is_empty(), "{warnings:?}");
-    volume
-}
-
-fn femur(orientation: &str) -> Volume {
-    let settings = settings(orientation);
-    let scanned = scan_phantom(Phantom::Femur, &settings, &Task::default()).unwrap();
-    written_and_read(&scanned, &settings)
-}
 
 /// Its mesh with the alpha that suits it: smaller than the marrow's canal is wide, larger than
 /// the wall is thick, so that no web across the canal comes and goes with the grid.
@@ -229,41 +148,14 @@ fn other_grids_give_the_same_surface_up_to_the_size_of_their_voxels() {
 
 #[test]
 fn left_front_and_head_stay_where_they_are() {
-    let body = Phantom::Femur.body().unwrap();
-    // Left: the greater trochanter's outer side. Right: the head's. Front, back and below: the
-    // condyles and the groove between them.
-    let landmarks = [
-        [17.0, 19.0, 190.0],
-        [-67.0, -9.0, 196.0],
-        [22.0, 40.0, -184.0],
-    ];
-    for landmark in landmarks {
-        assert!(
-            body.signed_distance_mm(landmark).abs() < 4.0,
-            "{landmark:?}"
-        );
-    }
-    // Mirrored points that the body is far from, by the axis they are mirrored along.
-    let absent: Vec<(usize, [f64; 3])> = landmarks
-        .iter()
-        .flat_map(|landmark| {
-            [0, 1, 2].map(|axis| {
-                let mut mirrored = *landmark;
-                mirrored[axis] *= -1.0;
-                (axis, mirrored)
-            })
-        })
-        .filter(|(_, p)| body.signed_distance_mm(*p) > 14.0)
-        .collect();
-    let axes: HashSet<usize> = absent.iter().map(|(axis, _)| *axis).collect();
-    assert_eq!(axes.len(), 3, "{absent:?}");
+    let absent = mirrored_landmarks();
     for name in PARALLEL.into_iter().chain(ALL_OTHERS) {
         let surface = Triangles::new(&known(name).1, 2.0 * PIXEL_MM);
-        for landmark in landmarks {
+        for landmark in LANDMARKS {
             let near = surface.signed_distance_mm(landmark).abs();
             assert!(near < 8.0, "{name}: {near} mm from {landmark:?}");
         }
-        for (_, mirrored) in &absent {
+        for mirrored in &absent {
             let far = surface.signed_distance_mm(*mirrored).abs();
             assert!(far > 12.0, "{name}: {far} mm from {mirrored:?}");
         }

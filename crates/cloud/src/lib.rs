@@ -38,6 +38,7 @@
 #![forbid(unsafe_code)]
 
 mod extract;
+mod forest;
 mod io;
 mod neighbours;
 mod normals;
@@ -50,6 +51,7 @@ use std::path::PathBuf;
 use bonemesh_task::Cancelled;
 
 pub use extract::extract_points;
+pub use forest::{Forest, Near};
 pub use io::{CloudFormat, check_target, read_cloud, write_cloud};
 pub use neighbours::mean_neighbour_distance;
 pub use normals::{NormalSettings, estimate_normals};

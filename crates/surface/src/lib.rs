@@ -83,6 +83,7 @@ mod isosurface;
 mod labelled;
 mod planar;
 mod poisson;
+mod sorted;
 #[cfg(test)]
 mod synthetic;
 mod tetrahedra;
@@ -126,6 +127,14 @@ pub enum SurfaceError {
     /// No voxel is bone.
     #[error("no voxel is above {threshold_hu} HU; lower the threshold")]
     NothingAbove {
+        /// The threshold asked for.
+        threshold_hu: f64,
+    },
+    /// Voxels are bone, but a surface encloses none of them.
+    #[error(
+        "what lies above {threshold_hu} HU is too small or too faint for a surface; lower the threshold, or take an isosurface at the threshold itself"
+    )]
+    TooSmall {
         /// The threshold asked for.
         threshold_hu: f64,
     },

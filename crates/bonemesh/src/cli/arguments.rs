@@ -2,13 +2,10 @@
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
-use std::str::FromStr;
 
 use bonemesh_cloud::{CloudFormat, Frame, Percent, Sampler};
 use bonemesh_dicom::SeriesChoice;
-use bonemesh_mesh::{MeshFormat, TriangleMesh};
-use bonemesh_phantom::{ORIENTATIONS, Orientation, Phantom, PhantomError, ScanSettings};
-use bonemesh_roi::{Method as RoiMethod, ThicknessMm};
+use bonemesh_mesh::MeshFormat;
 use bonemesh_segment::CannySettings;
 use bonemesh_volume::CropBox;
 use clap::builder::{PathBufValueParser, TypedValueParser};
@@ -16,6 +13,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::after_care::{AfterCareArguments, Repair};
 use super::histogram::{HistogramArguments, HuChoice};
+use super::phantom::PhantomArguments;
+use super::roi::Roi;
 use super::surface::{AlphaChoice, StudyArguments};
 use crate::settings::{AlphaRule, Method, Sampling, Settings};
 
@@ -71,7 +70,14 @@ pub(super) struct Info {
 pub(super) struct EdgeArguments {
     /// Bone is strictly above this Hounsfield value; or `auto`, or a name that `bonemesh histogram`
     /// lists, such as skull or cortical.
-    #[arg(long, default_value = "350", allow_negative_numbers = true)]
+    #[arg(
+        short = 't',
+        long,
+        visible_alias = "threshold",
+        value_name = "HU",
+        default_value = "350",
+        allow_negative_numbers = true
+    )]
     hu: HuChoice,
     /// Canny's smoothing in pixels.
     #[arg(long, default_value = "1.0", allow_negative_numbers = true, value_parser = canny)]
@@ -187,165 +193,6 @@ pub(super) struct MeshArguments {
     pub(super) threads: Option<NonZeroUsize>,
 }
 
-#[derive(Debug, Args)]
-pub(super) struct Roi {
-    /// Mesh file (.stl, .ply, .obj, .3mf).
-    pub(super) mesh: PathBuf,
-    #[command(flatten)]
-    pub(super) selection: Selection,
-    /// How deep the region reaches below the selection, in mm.
-    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = thickness)]
-    pub(super) thickness: ThicknessMm,
-    /// Mesh file to write (.stl, .ply, .obj, .3mf).
-    #[arg(short, long, value_parser = mesh_file())]
-    pub(super) output: PathBuf,
-    /// How the region is found.
-    #[arg(long, default_value = "thesis")]
-    pub(super) method: RoiMethod,
-    /// Worker threads; the result does not depend on it.
-    #[arg(long)]
-    pub(super) threads: Option<NonZeroUsize>,
-}
-
-#[derive(Debug, Args)]
-#[group(required = true, multiple = false)]
-pub(super) struct Selection {
-    /// Text file with one vertex index a line, of the mesh as read and vertex-merged in file order.
-    #[arg(long = "selection", value_name = "FILE")]
-    pub(super) file: Option<PathBuf>,
-    /// Select every vertex within RADIUS mm of the point X,Y,Z instead.
-    #[arg(long, value_name = "X,Y,Z,RADIUS", allow_negative_numbers = true)]
-    pub(super) within: Option<Ball>,
-}
-
-/// A ball in the mesh's frame, in mm.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Ball {
-    centre_mm: [f64; 3],
-    radius_mm: f64,
-}
-
-impl Ball {
-    /// The vertices of `mesh` inside the ball.
-    pub(super) fn vertices(&self, mesh: &TriangleMesh) -> Vec<u32> {
-        let squared = self.radius_mm * self.radius_mm;
-        let inside = |v: &[f64; 3]| {
-            (0..3)
-                .map(|i| (v[i] - self.centre_mm[i]).powi(2))
-                .sum::<f64>()
-                <= squared
-        };
-        (0_u32..)
-            .zip(mesh.vertices_mm())
-            .filter_map(|(i, v)| inside(v).then_some(i))
-            .collect()
-    }
-}
-
-impl FromStr for Ball {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let numbers: Result<Vec<f64>, String> = text.split(',').map(|n| number(n.trim())).collect();
-        match numbers?[..] {
-            [x, y, z, radius_mm]
-                if radius_mm > 0.0 && [x, y, z, radius_mm].iter().all(|v| v.is_finite()) =>
-            {
-                Ok(Self {
-                    centre_mm: [x, y, z],
-                    radius_mm,
-                })
-            }
-            _ => Err(format!(
-                "`{text}` is no ball; write x,y,z,radius in mm with a radius above 0, for example 0,-90,40,20"
-            )),
-        }
-    }
-}
-
-#[derive(Debug, Args)]
-pub(super) struct PhantomArguments {
-    /// Name of the phantom.
-    #[arg(value_parser = phantom, long_help = phantom_names())]
-    pub(super) name: Phantom,
-    /// Folder to make; the series goes to its sub-folder `dicom`, the truth to `truth.json`.
-    pub(super) directory: PathBuf,
-    /// Make pixels and slices this many times as large, over the same field of view.
-    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = length_mm)]
-    coarser: f64,
-    /// Length of a pixel instead, over the same field of view.
-    #[arg(long, value_name = "MM", conflicts_with = "coarser", value_parser = length_mm)]
-    pixel: Option<f64>,
-    /// Length of a slice instead, over the same field of view.
-    #[arg(long, value_name = "MM", conflicts_with = "coarser", value_parser = length_mm)]
-    slice: Option<f64>,
-    /// Standard deviation of the blur in the slice.
-    #[arg(long, value_name = "PIXELS")]
-    blur: Option<f64>,
-    /// Standard deviation of the noise.
-    #[arg(long, value_name = "HU")]
-    noise: Option<f64>,
-    /// How the patient lies and the slices run (--help lists the names).
-    #[arg(long, default_value = "axial", long_help = orientation_names())]
-    orientation: Orientation,
-    /// Leave out blur and noise.
-    #[arg(long, conflicts_with_all = ["blur", "noise"])]
-    ideal: bool,
-    /// Seed of the noise.
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
-}
-
-impl PhantomArguments {
-    /// How the phantom is scanned.
-    pub(super) fn settings(&self) -> ScanSettings {
-        let usual = self.name.settings().coarser(self.coarser);
-        let voxels = match (self.pixel, self.slice) {
-            (None, None) => usual,
-            (pixel, slice) => usual.with_voxels(
-                pixel.unwrap_or(usual.pixel_mm[0]),
-                slice.unwrap_or(usual.slice_mm),
-            ),
-        };
-        let settings = ScanSettings {
-            seed: self.seed,
-            orientation: self.orientation,
-            psf_px: self.blur.unwrap_or(voxels.psf_px),
-            noise_hu: self.noise.unwrap_or(voxels.noise_hu),
-            ..voxels
-        };
-        if self.ideal {
-            settings.ideal()
-        } else {
-            settings
-        }
-    }
-}
-
-fn phantom(name: &str) -> Result<Phantom, String> {
-    name.parse().map_err(|e: PhantomError| e.to_string())
-}
-
-fn phantom_names() -> String {
-    let names = Phantom::ALL
-        .into_iter()
-        .map(|p| (p.name(), p.description()));
-    listed("Name of the phantom:", names)
-}
-
-fn orientation_names() -> String {
-    listed(
-        "How the patient lies and the slices run:",
-        ORIENTATIONS.into_iter(),
-    )
-}
-
-/// A title and, below it, names with what they mean.
-fn listed(title: &str, names: impl Iterator<Item = (&'static str, &'static str)>) -> String {
-    let lines: Vec<String> = names.map(|(n, means)| format!("  {n:16}{means}")).collect();
-    format!("{title}\n{}", lines.join("\n"))
-}
-
 impl EdgeArguments {
     /// The settings for rendering with `surface`.
     pub(super) fn settings(&self, surface: Option<&SurfaceArguments>) -> Settings {
@@ -421,10 +268,6 @@ fn percent(text: &str) -> Result<Percent, String> {
     Percent::new(number(text)?).map_err(|e| e.to_string())
 }
 
-fn thickness(text: &str) -> Result<ThicknessMm, String> {
-    ThicknessMm::new(number(text)?).map_err(|e| e.to_string())
-}
-
 pub(super) fn length_mm(text: &str) -> Result<f64, String> {
     let mm = number(text)?;
     if mm > 0.0 && mm.is_finite() {
@@ -434,6 +277,6 @@ pub(super) fn length_mm(text: &str) -> Result<f64, String> {
     }
 }
 
-fn number(text: &str) -> Result<f64, String> {
+pub(super) fn number(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| format!("`{text}` is no number"))
 }

@@ -10,10 +10,10 @@ use bonemesh_roi::read_selection;
 use bonemesh_task::{Task, pool};
 use serde_json::json;
 
-use super::arguments::{
-    CloudArguments, Command, Info, MeshArguments, PhantomArguments, Render, Roi,
-};
+use super::arguments::{CloudArguments, Command, Info, MeshArguments, Render};
 use super::output::Answer;
+use super::phantom::PhantomArguments;
+use super::roi::Roi;
 use super::{after_care, histogram, text};
 use crate::region::{RegionRequest, select_roi};
 use crate::render::{Rendered, mesh_cloud, point_cloud, render};

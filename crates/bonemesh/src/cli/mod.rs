@@ -8,7 +8,9 @@ mod arguments;
 mod commands;
 mod histogram;
 mod output;
+mod phantom;
 mod progress;
+mod roi;
 mod surface;
 mod text;
 

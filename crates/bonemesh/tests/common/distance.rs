@@ -6,7 +6,7 @@ use bonemesh::TriangleMesh;
 
 type Point = [f64; 3];
 
-fn sub(a: Point, b: Point) -> Point {
+pub(crate) fn sub(a: Point, b: Point) -> Point {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
@@ -22,7 +22,7 @@ fn along(a: Point, direction: Point, t: f64) -> Point {
     std::array::from_fn(|c| a[c] + t * direction[c])
 }
 
-fn cross(a: Point, b: Point) -> Point {
+pub(crate) fn cross(a: Point, b: Point) -> Point {
     [
         a[1] * b[2] - a[2] * b[1],
         a[2] * b[0] - a[0] * b[2],

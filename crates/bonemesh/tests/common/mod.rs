@@ -1,12 +1,14 @@
-//! What the tests of geometry share.
+//! What the tests share.
 
 #![allow(dead_code, reason = "each test file uses its part")]
 
+pub(crate) mod command;
 pub(crate) mod distance;
+pub(crate) mod femur;
 
 use bonemesh::{HuThreshold, Method, Settings, TriangleMesh, Volume, Voxels};
 use bonemesh_phantom::Body;
-use distance::{Means, length, means, shift};
+use distance::{Means, length, means, sampled, shift};
 
 /// Halfway from soft tissue to the bone of the phantoms: there the threshold moves nothing.
 pub(crate) const HALFWAY_HU: f64 = 640.0;
@@ -54,7 +56,7 @@ pub(crate) fn interpolated(volume: &Volume, patient_mm: [f64; 3]) -> Option<f64>
     Some(sum)
 }
 
-/// How far the vertices of a mesh lie from the surface of a body, and where they lie as a whole.
+/// How far a mesh lies from the surface of a body, and where it lies as a whole.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fit {
     pub(crate) distance_mm: Means,
@@ -63,8 +65,21 @@ pub(crate) struct Fit {
 
 /// Measured at the vertices that `counts` takes.
 pub(crate) fn fit(mesh: &TriangleMesh, body: &dyn Body, counts: impl Fn([f64; 3]) -> bool) -> Fit {
-    let vertices: Vec<[f64; 3]> = mesh.vertices_mm().to_vec();
-    let vertices: Vec<[f64; 3]> = vertices.into_iter().filter(|p| counts(*p)).collect();
+    let vertices = mesh.vertices_mm().iter().map(|p| (*p, 1.0));
+    fit_of(&vertices.collect::<Vec<_>>(), body, counts)
+}
+
+/// Measured at the middles of triangles that `counts` takes, by area.
+pub(crate) fn fit_of_middles(
+    mesh: &TriangleMesh,
+    body: &dyn Body,
+    counts: impl Fn([f64; 3]) -> bool,
+) -> Fit {
+    fit_of(&sampled(mesh, 1), body, counts)
+}
+
+fn fit_of(points: &[([f64; 3], f64)], body: &dyn Body, counts: impl Fn([f64; 3]) -> bool) -> Fit {
+    let points: Vec<_> = points.iter().filter(|(p, _)| counts(*p)).collect();
     let distance = |p: [f64; 3]| body.signed_distance_mm(p);
     let normal = |p: [f64; 3]| {
         const STEP_MM: f64 = 1e-3;
@@ -78,7 +93,9 @@ pub(crate) fn fit(mesh: &TriangleMesh, body: &dyn Body, counts: impl Fn([f64; 3]
         slope.map(|v| if steep > 0.0 { v / steep } else { 0.0 })
     };
     Fit {
-        distance_mm: means(vertices.iter().map(|p| (distance(*p), 1.0))),
-        shift_mm: length(shift(vertices.iter().map(|p| (distance(*p), normal(*p))))),
+        distance_mm: means(points.iter().map(|(p, weight)| (distance(*p), *weight))),
+        shift_mm: length(shift(
+            points.iter().map(|(p, _)| (distance(*p), normal(*p))),
+        )),
     }
 }

@@ -21,6 +21,9 @@ const TYPICAL_NEIGHBOURS: f64 = 100.0;
 /// A cell may hold this many points for each neighbour asked for.
 const CROWDED: usize = 8;
 
+/// Points sorted between two looks at the task.
+const STRIDE: usize = 1 << 14;
+
 /// Points sorted into cubes.
 pub(super) struct Grid {
     origin: [f64; 3],
@@ -36,10 +39,16 @@ pub(super) struct Grid {
 
 impl Grid {
     /// A grid for searches of `k` neighbours, or `None` when the points are too uneven for one.
-    pub(super) fn new(points: &[[f64; 3]], k: usize) -> Option<Self> {
+    pub(super) fn new(
+        points: &[[f64; 3]],
+        k: usize,
+        task: &Task,
+    ) -> Result<Option<Self>, Cancelled> {
         let (low, high) = bounds(points);
         let extent: [f64; 3] = std::array::from_fn(|i| high[i] - low[i]);
-        let cell_mm = cell_size(extent, points.len(), k)?;
+        let Some(cell_mm) = cell_size(extent, points.len(), k) else {
+            return Ok(None);
+        };
         let size = extent.map(|e| (e / cell_mm) as usize + 1);
         let mut grid = Self {
             origin: low,
@@ -50,25 +59,31 @@ impl Grid {
             y: vec![0.0; points.len()],
             z: vec![0.0; points.len()],
         };
-        for point in points {
-            let cell = grid.cell_of(*point);
-            grid.first[cell + 1] += 1;
+        for points in points.chunks(STRIDE) {
+            task.check()?;
+            for point in points {
+                let cell = grid.cell_of(*point);
+                grid.first[cell + 1] += 1;
+            }
         }
         let fullest = grid.first.iter().max().map_or(0, |n| *n as usize);
         if fullest > CROWDED * k {
-            return None;
+            return Ok(None);
         }
         for cell in 1..grid.first.len() {
             grid.first[cell] += grid.first[cell - 1];
         }
         let mut next = grid.first.clone();
-        for point in points {
-            let slot = &mut next[grid.cell_of(*point)];
-            let at = *slot as usize;
-            *slot += 1;
-            [grid.x[at], grid.y[at], grid.z[at]] = *point;
+        for points in points.chunks(STRIDE) {
+            task.check()?;
+            for point in points {
+                let slot = &mut next[grid.cell_of(*point)];
+                let at = *slot as usize;
+                *slot += 1;
+                [grid.x[at], grid.y[at], grid.z[at]] = *point;
+            }
         }
-        Some(grid)
+        Ok(Some(grid))
     }
 
     /// For each point, in the grid's order, the sum of the distances to its `k` nearest, itself

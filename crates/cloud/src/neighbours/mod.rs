@@ -73,7 +73,7 @@ fn free_sum(
     if centres.is_some_and(<[_]>::is_empty) {
         return Ok(0.0);
     }
-    let sums = match (Grid::new(points, k), centres) {
+    let sums = match (Grid::new(points, k, task)?, centres) {
         (Some(grid), Some(centres)) => grid.distance_sums_from(centres, k, task)?,
         (Some(grid), None) => grid.distance_sums(k, task)?,
         (None, centres) => tree::distance_sums(points, centres.unwrap_or(points), k, task)?,
@@ -124,7 +124,7 @@ mod tests {
             .iter()
             .sum();
         assert!(is_close(tree, expected), "tree {tree} {expected}");
-        if let Some(grid) = Grid::new(points, k) {
+        if let Some(grid) = Grid::new(points, k, &task).unwrap() {
             let grid: f64 = grid.distance_sums(k, &task).unwrap().iter().sum();
             assert!(is_close(grid, expected), "grid {grid} {expected}");
         }

@@ -1,16 +1,12 @@
-//! Neighbour distances by a k-d tree: right for every cloud, however uneven.
+//! Neighbour distances by k-d trees: right for every cloud, however uneven.
 
 use std::num::NonZero;
 
 use bonemesh_task::{Cancelled, Task};
-use kiddo::SquaredEuclidean;
-use kiddo::immutable::float::kdtree::ImmutableKdTree;
 use rayon::prelude::*;
 
 use super::BATCH;
-
-/// Points in a leaf; the fastest of 32, 64 and 128 on clouds of skulls.
-const LEAF: usize = 64;
+use crate::Forest;
 
 /// For each of `centres` the sum of the distances to the `k` nearest of `points`.
 pub(super) fn distance_sums(
@@ -19,19 +15,22 @@ pub(super) fn distance_sums(
     k: usize,
     task: &Task,
 ) -> Result<Vec<f64>, Cancelled> {
-    task.check()?;
     let k = NonZero::new(k).expect("callers ask for two or more, else this is a bug");
-    // The immutable tree takes any number of points that share a coordinate, which the mutable
-    // one does not, and the points of a slice always do.
-    let tree: ImmutableKdTree<f64, u32, 3, LEAF> = ImmutableKdTree::new_from_slice(points);
+    let forest = Forest::new(points, task)?;
     let batches: Vec<Vec<f64>> = centres
         .par_chunks(BATCH)
         .map(|batch| {
             let mut sums = Vec::with_capacity(batch.len());
             for point in batch {
                 task.check()?;
-                let nearest = tree.nearest_n::<SquaredEuclidean>(point, k);
-                sums.push(nearest.iter().map(|n| n.distance.sqrt()).sum());
+                let nearest = forest.nearest(*point, k, f64::INFINITY);
+                // Points whose distance no number can hold.
+                let beyond = if nearest.len() < k.get() {
+                    f64::INFINITY
+                } else {
+                    0.0
+                };
+                sums.push(nearest.iter().map(|n| n.squared_mm2.sqrt()).sum::<f64>() + beyond);
             }
             task.advance(batch.len())?;
             Ok(sums)

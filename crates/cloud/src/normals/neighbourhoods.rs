@@ -3,15 +3,10 @@
 use std::num::NonZero;
 
 use bonemesh_task::{Cancelled, Task};
-use kiddo::SquaredEuclidean;
-use kiddo::immutable::float::kdtree::ImmutableKdTree;
 use rayon::prelude::*;
 
 use super::{BATCH, NormalSettings, dot, minus};
-use crate::PointCloud;
-
-/// Points in a leaf of the tree.
-const LEAF: usize = 64;
+use crate::{Forest, PointCloud};
 
 /// A neighbourhood grows to so many times its size in search of other slices.
 const GROWTH: [usize; 3] = [1, 3, 9];
@@ -36,8 +31,7 @@ impl Neighbourhoods {
         task: &Task,
     ) -> Result<Self, Cancelled> {
         task.begin("neighbours", cloud.len());
-        let search = Search::new(cloud, settings);
-        task.check()?;
+        let search = Search::new(cloud, settings, task)?;
         let batches: Vec<Vec<Vec<u32>>> = (0..cloud.len().div_ceil(BATCH))
             .into_par_iter()
             .map(|batch| {
@@ -101,12 +95,16 @@ fn across_slices(cloud: &PointCloud) -> [f64; 3] {
 struct Search<'a> {
     points: &'a [[f64; 3]],
     slices: Vec<f64>,
-    tree: ImmutableKdTree<f64, u32, 3, LEAF>,
+    forest: Forest,
     settings: NormalSettings,
 }
 
 impl<'a> Search<'a> {
-    fn new(cloud: &'a PointCloud, settings: NormalSettings) -> Self {
+    fn new(
+        cloud: &'a PointCloud,
+        settings: NormalSettings,
+        task: &Task,
+    ) -> Result<Self, Cancelled> {
         let slices = match cloud.lattice() {
             Some(lattice) => lattice
                 .coordinates
@@ -115,12 +113,12 @@ impl<'a> Search<'a> {
                 .collect(),
             None => cloud.points_mm().iter().map(|p| p[2]).collect(),
         };
-        Self {
+        Ok(Self {
             points: cloud.points_mm(),
             slices,
-            tree: ImmutableKdTree::new_from_slice(cloud.points_mm()),
+            forest: Forest::new(cloud.points_mm(), task)?,
             settings,
-        }
+        })
     }
 
     /// The neighbours of point `i`: the nearest, or, where too few of these lie in other slices,
@@ -157,12 +155,8 @@ impl<'a> Search<'a> {
     fn nearest(&self, i: usize, count: usize) -> Vec<u32> {
         let count = NonZero::new(count).expect("three or more were asked for, else this is a bug");
         let reach = self.settings.radius_mm * self.settings.radius_mm;
-        let mut nearest =
-            self.tree
-                .nearest_n_within::<SquaredEuclidean>(&self.points[i], reach, count, true);
-        // Ties by number, so that the order does not depend on how the tree is built.
-        nearest.sort_by(|a, b| a.distance.total_cmp(&b.distance).then(a.item.cmp(&b.item)));
-        let others = nearest.iter().map(|n| n.item).filter(|j| *j as usize != i);
+        let nearest = self.forest.nearest(self.points[i], count, reach);
+        let others = nearest.iter().map(|n| n.point).filter(|j| *j as usize != i);
         others.collect()
     }
 }

@@ -2,13 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use kiddo::SquaredEuclidean;
-use kiddo::immutable::float::kdtree::ImmutableKdTree;
+use bonemesh_cloud::{Forest, Near};
+use bonemesh_task::{Cancelled, Task};
+use rayon::prelude::*;
 
 use crate::vector::{along, cross, dot, minus};
 
-/// Points in a leaf of the tree.
-const LEAF: usize = 64;
 /// How far a point is moved to settle ties, as a part of the radius.
 const MOVED: f64 = 1e-5;
 /// A point is inside a ball where it is nearer to the centre than the radius less this part.
@@ -17,7 +16,7 @@ const INSIDE: f64 = 1e-9;
 /// Points, each moved a little so that no four share a ball, and balls of one radius among them.
 pub(super) struct Balls {
     points: Vec<[f64; 3]>,
-    tree: ImmutableKdTree<f64, u32, 3, LEAF>,
+    forest: Forest,
     radius: f64,
 }
 
@@ -28,23 +27,25 @@ pub(super) struct Touch {
 }
 
 impl Balls {
-    pub(super) fn new(points_mm: &[[f64; 3]], radius_mm: f64) -> Self {
+    pub(super) fn new(
+        points_mm: &[[f64; 3]],
+        radius_mm: f64,
+        task: &Task,
+    ) -> Result<Self, Cancelled> {
         let moved = |p: &[f64; 3]| {
-            let mut state = p.iter().fold(0x9e37_79b9_7f4a_7c15, |h: u64, v| {
-                mixed(h ^ (v + 0.0).to_bits())
-            });
+            let mut state = scattered(p.map(|v| (v + 0.0).to_bits()));
             p.map(|v| {
                 state = mixed(state);
                 let part = (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
                 v + MOVED * radius_mm * part
             })
         };
-        let points: Vec<[f64; 3]> = points_mm.iter().map(moved).collect();
-        Self {
-            tree: ImmutableKdTree::new_from_slice(&points),
+        let points: Vec<[f64; 3]> = points_mm.par_iter().map(moved).collect();
+        Ok(Self {
+            forest: Forest::new(&points, task)?,
             points,
             radius: radius_mm,
-        }
+        })
     }
 
     pub(super) fn place(&self, v: u32) -> [f64; 3] {
@@ -53,9 +54,7 @@ impl Balls {
 
     /// Points within `reach`, the nearest first.
     fn within(&self, place: [f64; 3], reach: f64) -> Vec<u32> {
-        let mut found = self.tree.within::<SquaredEuclidean>(&place, reach * reach);
-        found.sort_by(|a, b| a.distance.total_cmp(&b.distance).then(a.item.cmp(&b.item)));
-        found.into_iter().map(|n| n.item).collect()
+        numbers(self.forest.within(place, reach * reach))
     }
 
     /// The points that a ball can touch together with `v`, the nearest first, without `v`.
@@ -68,10 +67,7 @@ impl Balls {
     /// The points in a ball or on it.
     pub(super) fn near(&self, centre: [f64; 3]) -> Vec<u32> {
         let reach = self.radius * (1.0 + 1e-6);
-        let found = self
-            .tree
-            .within_unsorted::<SquaredEuclidean>(&centre, reach * reach);
-        found.into_iter().map(|n| n.item).collect()
+        numbers(self.forest.within_unsorted(centre, reach * reach))
     }
 
     /// Whether none of `near` but its corners lies inside a ball.
@@ -135,6 +131,17 @@ impl Balls {
         let (_, v, touch) = first?;
         self.is_empty(&touch, &near).then_some((v, touch))
     }
+}
+
+fn numbers(found: Vec<Near>) -> Vec<u32> {
+    found.into_iter().map(|near| near.point).collect()
+}
+
+/// A number without pattern that a place alone decides.
+pub(super) fn scattered(place: [u64; 3]) -> u64 {
+    place
+        .into_iter()
+        .fold(0x9e37_79b9_7f4a_7c15, |h, v| mixed(h ^ v))
 }
 
 /// Spreads the bits of a number over all of it.

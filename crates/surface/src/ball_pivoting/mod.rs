@@ -12,15 +12,17 @@
 mod ball;
 mod front;
 
+use std::borrow::Cow;
 use std::collections::VecDeque;
 
 use bonemesh_cloud::{NormalSettings, PointCloud, estimate_normals, mean_neighbour_distance};
 use bonemesh_mesh::TriangleMesh;
-use bonemesh_task::Task;
+use bonemesh_task::{Cancelled, Task};
 
 use crate::SurfaceError;
+use crate::sorted::sorted;
 use crate::vector::{cross, dot, minus};
-use ball::Balls;
+use ball::{Balls, scattered};
 use front::Front;
 
 /// The smallest ball of the published study: so many mean distances to the nearest neighbour.
@@ -72,7 +74,7 @@ pub fn ball_pivoting(
     settings: &BallPivotingSettings,
     task: &Task,
 ) -> Result<BallPivoted, SurfaceError> {
-    let cloud = &distinct(cloud);
+    let cloud = &*distinct(cloud, task)?;
     let radii_mm = radii(cloud, settings, task)?;
     let normals = estimate_normals(cloud, settings.normals, task)?;
     task.begin("surface", radii_mm.len() * cloud.len());
@@ -82,8 +84,7 @@ pub fn ball_pivoting(
         task,
     };
     for &radius_mm in &radii_mm {
-        let balls = Balls::new(cloud.points_mm(), radius_mm);
-        task.check()?;
+        let balls = Balls::new(cloud.points_mm(), radius_mm, task)?;
         rolling.roll_on(&balls)?;
         for first in 0..cloud.len() as u32 {
             task.advance(1)?;
@@ -101,16 +102,23 @@ pub fn ball_pivoting(
     Ok(BallPivoted { mesh, radii_mm })
 }
 
-/// The cloud without repeated points.
-fn distinct(cloud: &PointCloud) -> PointCloud {
-    let points = cloud.points_mm();
-    // Adding 0.0 turns -0.0 into 0.0.
-    let key = |i: &u32| points[*i as usize].map(|v| (v + 0.0).to_bits());
-    let mut order: Vec<u32> = (0..points.len() as u32).collect();
-    order.sort_by_key(key);
-    order.dedup_by_key(|i| key(i));
-    order.sort_unstable();
-    cloud.subset(&order)
+/// The cloud without repeated points: of equal ones the first stays.
+fn distinct<'a>(cloud: &'a PointCloud, task: &Task) -> Result<Cow<'a, PointCloud>, Cancelled> {
+    let count = cloud.len();
+    let places = (0u32..).zip(cloud.points_mm()).map(|(point, place)| {
+        // Adding 0.0 turns -0.0 into 0.0.
+        let place = place.map(|v| (v + 0.0).to_bits());
+        (scattered(place), place, point)
+    });
+    let mut places = sorted(places, |of| (of.0 >> 56) as u8, |of| *of, task)?;
+    places.dedup_by_key(|(_, place, _)| *place);
+    if places.len() == count {
+        return Ok(Cow::Borrowed(cloud));
+    }
+    let points = places.into_iter().map(|(_, _, point)| point);
+    let bucket = |point: &u32| (256 * *point as usize / count) as u8;
+    let order = sorted(points, bucket, |point| *point, task)?;
+    Ok(Cow::Owned(cloud.subset(&order)))
 }
 
 fn radii(

@@ -1,10 +1,62 @@
 //! Hounsfield units between voxels.
 
-/// What a voxel is stored as.
-pub(crate) trait Voxel: Copy + Sync + Into<f32> {}
+use std::borrow::Cow;
 
-impl Voxel for i16 {}
-impl Voxel for f32 {}
+use rayon::prelude::*;
+
+/// The greatest size of a value: squares and sums of such ones are still numbers.
+const GREATEST_HU: f32 = 1e9;
+
+/// What a voxel is stored as.
+pub(crate) trait Voxel: Copy + Send + Sync + Into<f32> {
+    /// Whether it can be calculated with.
+    fn is_usable(self) -> bool;
+    /// The nearest value that can be calculated with; of what is no number, `otherwise`.
+    fn usable_or(self, otherwise: Self) -> Self;
+}
+
+impl Voxel for i16 {
+    fn is_usable(self) -> bool {
+        true
+    }
+
+    fn usable_or(self, _: Self) -> Self {
+        self
+    }
+}
+
+impl Voxel for f32 {
+    fn is_usable(self) -> bool {
+        self.abs() <= GREATEST_HU
+    }
+
+    fn usable_or(self, otherwise: Self) -> Self {
+        if self.is_nan() {
+            otherwise
+        } else {
+            self.clamp(-GREATEST_HU, GREATEST_HU)
+        }
+    }
+}
+
+/// Voxels that can be calculated with: values beyond all measure are cut off, and what is no
+/// number is as dark as the darkest.
+pub(crate) fn usable<T: Voxel>(voxels: &[T]) -> Cow<'_, [T]> {
+    if voxels.par_iter().all(|voxel| voxel.is_usable()) {
+        return Cow::Borrowed(voxels);
+    }
+    let number = |voxel: &&T| !Into::<f32>::into(**voxel).is_nan();
+    let darkest = voxels
+        .iter()
+        .filter(number)
+        .copied()
+        .reduce(|a, b| if b.into() < a.into() { b } else { a });
+    let Some(darkest) = darkest else {
+        return Cow::Borrowed(voxels);
+    };
+    let darkest = darkest.usable_or(darkest);
+    Cow::Owned(voxels.par_iter().map(|v| v.usable_or(darkest)).collect())
+}
 
 /// Voxels in the order slice, row, column, read by column, row, slice.
 #[derive(Clone, Copy)]

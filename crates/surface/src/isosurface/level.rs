@@ -167,9 +167,10 @@ fn spread(sources: &[Vec<Source>], k: usize, shape: [usize; 3], reach: [f32; 3])
     let mut sums = vec![Sum::default(); columns * rows];
     let around = reach[2].ceil() as usize + 1;
     let window = k.saturating_sub(around)..(k + around + 1).min(slices);
+    // An edge may lie beyond the border, where the border's grey goes on.
     let range = |at: f32, reach: f32, end: usize| {
-        let first = (at - reach).ceil().max(0.0) as usize;
-        first..((at + reach).floor() + 1.0).clamp(0.0, end as f32) as usize
+        let within = |voxel: f32| voxel.clamp(0.0, end as f32) as usize;
+        within((at - reach).ceil())..within((at + reach).floor() + 1.0)
     };
     for source in sources[window].iter().flatten() {
         let z = k as f32 - source.at[2];

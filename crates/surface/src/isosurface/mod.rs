@@ -31,7 +31,7 @@ use rayon::prelude::*;
 use crate::SurfaceError;
 use cut::Crossing;
 use cuts::Cuts;
-use grey::{Grey, Voxel};
+use grey::{Grey, Voxel, usable};
 use march::{Rows, triangles};
 use signs::Signs;
 
@@ -67,7 +67,8 @@ impl IsosurfaceSettings {
 /// is outside and none lies on the surface. The stages are `edges` and `surface`.
 ///
 /// # Errors
-/// [`SurfaceError::NothingAbove`], [`SurfaceError::TooLarge`], [`SurfaceError::Cancelled`].
+/// [`SurfaceError::NothingAbove`], [`SurfaceError::TooSmall`], [`SurfaceError::TooLarge`],
+/// [`SurfaceError::Cancelled`].
 pub fn isosurface(
     volume: &Volume,
     settings: IsosurfaceSettings,
@@ -98,9 +99,23 @@ pub fn isosurface(
             }),
         }
     };
-    mesh?.ok_or(SurfaceError::NothingAbove {
-        threshold_hu: settings.threshold_hu,
-    })
+    mesh?.ok_or_else(|| nothing(volume, settings))
+}
+
+/// Why there is no surface: no voxel is above the threshold, or those that are do not reach the
+/// grey of their own edges.
+pub(crate) fn nothing(volume: &Volume, settings: IsosurfaceSettings) -> SurfaceError {
+    let threshold = threshold(volume, settings);
+    let is_any_above = match volume.voxels() {
+        Voxels::I16(hu) => hu.iter().any(|&hu| f32::from(hu) > threshold),
+        Voxels::F32(hu) => hu.iter().any(|&hu| hu > threshold),
+    };
+    let threshold_hu = settings.threshold_hu;
+    if is_any_above {
+        SurfaceError::TooSmall { threshold_hu }
+    } else {
+        SurfaceError::NothingAbove { threshold_hu }
+    }
 }
 
 /// How far smoothing moves the surface: what noise and stairs make of it, less than its detail.
@@ -115,12 +130,12 @@ pub(crate) fn shape(volume: &Volume) -> [usize; 3] {
     [columns, rows, slices]
 }
 
-/// Voxels in the order slice, row, column, whatever order they are stored in.
+/// Usable voxels in the order slice, row, column, whatever order they are stored in.
 fn in_order<T: Voxel, R>(hu: &Array3<T>, of: impl FnOnce(&Grey<'_, T>) -> R) -> R {
     let (slices, rows, columns) = hu.dim();
     let hu = hu.as_standard_layout();
     let hu = hu.as_slice().expect("in order, else it is a bug");
-    of(&Grey::new(hu, [columns, rows, slices]))
+    of(&Grey::new(&usable(hu), [columns, rows, slices]))
 }
 
 /// The threshold, above all of its whole numbers: so none of them lies just on the surface.

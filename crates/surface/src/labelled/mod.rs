@@ -27,7 +27,7 @@ use bonemesh_task::Task;
 use bonemesh_volume::Volume;
 
 use crate::isosurface::grey::Grey;
-use crate::isosurface::{above_level, shape};
+use crate::isosurface::{above_level, nothing, shape};
 use crate::{IsosurfaceSettings, SurfaceError};
 use field::Field;
 use points::Grid;
@@ -56,8 +56,9 @@ pub struct LabelledSurface {
 /// The stages are `edges`, `distances`, `tetrahedra`, `borders`, `labels` and `surface`.
 ///
 /// # Errors
-/// [`SurfaceError::NothingAbove`], [`SurfaceError::TooLarge`], [`SurfaceError::Delaunay`] where
-/// there are too many points, [`SurfaceError::Cancelled`].
+/// [`SurfaceError::NothingAbove`], [`SurfaceError::TooSmall`] (bone of less than a voxel may be
+/// less than a tetrahedron), [`SurfaceError::TooLarge`], [`SurfaceError::Delaunay`] where there are
+/// too many points, [`SurfaceError::Cancelled`].
 pub fn labelled_surface(
     volume: &Volume,
     settings: IsosurfaceSettings,
@@ -72,8 +73,7 @@ pub fn labelled_surface(
     let mut places = points::crossings(&above, settings.crossing(), &field, voxel_mm, task)?;
     drop(values);
     if places.is_empty() {
-        let threshold_hu = settings.threshold_hu;
-        return Err(SurfaceError::NothingAbove { threshold_hu });
+        return Err(nothing(volume, settings));
     }
     places.extend(points::far_points(&field, shape, voxel_mm));
     if places.len() >= UNUSED as usize - 8 {
@@ -97,8 +97,7 @@ pub fn labelled_surface(
     let mut triangles = surface.triangles;
     if triangles.is_empty() {
         // Less than a tetrahedron of bone.
-        let threshold_hu = settings.threshold_hu;
-        return Err(SurfaceError::NothingAbove { threshold_hu });
+        return Err(nothing(volume, settings));
     }
     let vertices_mm = used(&grid, &mut triangles);
     Ok(LabelledSurface {

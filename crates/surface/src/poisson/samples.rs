@@ -3,16 +3,12 @@
 use std::f64::consts::PI;
 use std::num::NonZero;
 
-use bonemesh_cloud::NormalSettings;
+use bonemesh_cloud::{Forest, NormalSettings};
 use bonemesh_task::{Cancelled, Task};
-use kiddo::SquaredEuclidean;
-use kiddo::immutable::float::kdtree::ImmutableKdTree;
 use rayon::prelude::*;
 
 use super::grid::{Grid, Place};
 
-/// Points in a leaf of the tree.
-const LEAF: usize = 64;
 /// Points that one worker handles between two looks at the task.
 const BATCH: usize = 256;
 /// Cells that a normal is spread over, as a part of the distance to the farthest neighbour.
@@ -44,15 +40,14 @@ pub(super) fn samples(
     settings: NormalSettings,
     task: &Task,
 ) -> Result<Vec<Sample>, Cancelled> {
-    let tree: ImmutableKdTree<f64, u32, 3, LEAF> = ImmutableKdTree::new_from_slice(points_mm);
-    task.check()?;
+    let forest = Forest::new(points_mm, task)?;
     let count = NonZero::new(settings.neighbours).expect("normals were made, else this is a bug");
     let reach = settings.radius_mm * settings.radius_mm;
     // At least four cells a side remain.
     let most = (grid.nodes - 1).ilog2() - 2;
     let sample = |at_mm: &[f64; 3], normal: &[f64; 3]| {
-        let near = tree.nearest_n_within::<SquaredEuclidean>(at_mm, reach, count, false);
-        let farthest = near.iter().map(|n| n.distance).fold(0.0, f64::max);
+        let near = forest.nearest(*at_mm, count, reach);
+        let farthest = near.last().map_or(0.0, |n| n.squared_mm2);
         let cells = CELL_OF_REACH * farthest.sqrt() / grid.cell_mm;
         Sample {
             at_mm: *at_mm,
