@@ -78,7 +78,7 @@ impl From<Intersection> for Place {
 /// [`Error::Mesh`] for coordinates that no file can hold, or [`Error::is_cancelled`].
 pub fn check(mesh: &TriangleMesh, task: &Task) -> Result<PrintCheck, Error> {
     pool(None)?.install(|| {
-        let mesh = mesh.as_written()?;
+        let mesh = mesh.as_written(task)?;
         let topology = check_topology(&mesh, task)?;
         let tree = TriangleTree::new(&mesh, task)?;
         let found = find_intersections(&tree, MOST_NAMED, task)?;
@@ -115,7 +115,7 @@ pub fn check(mesh: &TriangleMesh, task: &Task) -> Result<PrintCheck, Error> {
 /// [`Error::Pool`], or [`Error::is_cancelled`].
 pub fn wall_thickness(mesh: &TriangleMesh, task: &Task) -> Result<Vec<f64>, Error> {
     pool(None)?.install(|| {
-        let (merged, numbers) = mesh.merged_with_numbers();
+        let (merged, numbers) = mesh.merged_with_numbers(task)?;
         let tree = TriangleTree::new(&merged, task)?;
         let walls = bonemesh_mesh::wall_thickness(&tree, task)?.at_vertex_mm;
         Ok(numbers.iter().map(|n| walls[*n as usize]).collect())

@@ -1,7 +1,12 @@
 //! The mesh itself.
 
+use bonemesh_task::{Cancelled, Task};
+
 use crate::MeshError;
 use crate::merge::VertexMerger;
+
+/// Vertices done between two looks at the cancel switch.
+const STRIDE: usize = 1 << 14;
 
 /// A triangle corner that [`TriangleMesh::compacted`] has not met yet.
 const UNSEEN: u32 = u32::MAX;
@@ -92,20 +97,24 @@ impl TriangleMesh {
     /// The first of equal vertices keeps its place in the order and later ones become it, so the
     /// numbers do not depend on anything but the order of the vertices. 0.0 and -0.0 are equal.
     /// Triangles keep their number and order, also those whose corners have become one.
-    #[must_use]
-    pub fn merged(&self) -> Self {
-        self.merged_with_numbers().0
+    ///
+    /// # Errors
+    /// [`Cancelled`]
+    pub fn merged(&self, task: &Task) -> Result<Self, Cancelled> {
+        Ok(self.merged_with_numbers(task)?.0)
     }
 
     /// [`Self::merged`], and for each vertex of this mesh its number in that one.
-    #[must_use]
-    pub fn merged_with_numbers(&self) -> (Self, Vec<u32>) {
+    ///
+    /// # Errors
+    /// [`Cancelled`]
+    pub fn merged_with_numbers(&self, task: &Task) -> Result<(Self, Vec<u32>), Cancelled> {
         let mut merger = VertexMerger::default();
-        let numbers: Vec<u32> = self
-            .vertices_mm
-            .iter()
-            .map(|&v| merger.index_of(v))
-            .collect();
+        let mut numbers = Vec::with_capacity(self.vertices_mm.len());
+        for vertices_mm in self.vertices_mm.chunks(STRIDE) {
+            task.check()?;
+            numbers.extend(vertices_mm.iter().map(|&v| merger.index_of(v)));
+        }
         let merged = Self {
             vertices_mm: merger.into_vertices(),
             triangles: self
@@ -114,18 +123,19 @@ impl TriangleMesh {
                 .map(|t| t.map(|v| numbers[v as usize]))
                 .collect(),
         };
-        (merged, numbers)
+        Ok((merged, numbers))
     }
 
     /// The same surface as its file gives it back: coordinates rounded to 32-bit floats, vertices
     /// that are then equal made one.
     ///
     /// # Errors
-    /// [`MeshError::NotFinite`] for a coordinate that is too large for a 32-bit float.
-    pub fn as_written(&self) -> Result<Self, MeshError> {
+    /// [`MeshError::NotFinite`] for a coordinate that is too large for a 32-bit float,
+    /// [`MeshError::Cancelled`].
+    pub fn as_written(&self, task: &Task) -> Result<Self, MeshError> {
         let rounded = |v: &[f64; 3]| v.map(|value| f64::from(value as f32));
         let vertices_mm = self.vertices_mm.iter().map(rounded).collect();
-        Ok(Self::new(vertices_mm, self.triangles.clone())?.merged())
+        Ok(Self::new(vertices_mm, self.triangles.clone())?.merged(task)?)
     }
 
     /// The same triangles without the vertices that none of them uses; the order stays.
@@ -183,7 +193,8 @@ mod tests {
         let (a, b, c) = ([0.0, 1.0, 2.0], [3.0, 1.0, 2.0], [-0.0, 1.0, 2.0]);
         let mesh = TriangleMesh::new(vec![b, a, c, b, [9.0; 3]], vec![[0, 1, 4], [3, 2, 1]])
             .unwrap()
-            .merged();
+            .merged(&Task::default())
+            .unwrap();
         assert_eq!(mesh.vertices_mm(), [b, a, [9.0; 3]]);
         assert_eq!(mesh.triangles(), [[0, 1, 2], [0, 1, 1]]);
     }
@@ -193,7 +204,7 @@ mod tests {
         let near = [200.0, 1e-50, 0.1];
         let same = [200.000_000_1, 0.0, f64::from(0.1_f32)];
         let mesh = TriangleMesh::new(vec![near, [1.0; 3], same], vec![[0, 1, 2]]).unwrap();
-        let written = mesh.as_written().unwrap();
+        let written = mesh.as_written(&Task::default()).unwrap();
         assert_eq!(
             written.vertices_mm(),
             [[200.0, 0.0, f64::from(0.1_f32)], [1.0; 3]]
@@ -201,7 +212,7 @@ mod tests {
         assert_eq!(written.triangles(), [[0, 1, 0]]);
         let far = TriangleMesh::new(vec![[0.0, 1e39, 0.0]], vec![]).unwrap();
         assert!(matches!(
-            far.as_written(),
+            far.as_written(&Task::default()),
             Err(MeshError::NotFinite { vertex: 0, .. })
         ));
     }

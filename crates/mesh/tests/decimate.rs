@@ -96,7 +96,9 @@ fn a_torus_keeps_its_hole_its_volume_and_the_number_asked_for() {
 
 #[test]
 fn a_large_mesh_is_done_in_blocks_with_the_same_promises_for_any_number_of_threads() {
-    let given = bumpy(300, 200, 0.003, 0.7).as_written().unwrap();
+    let given = bumpy(300, 200, 0.003, 0.7)
+        .as_written(&Task::default())
+        .unwrap();
     let before = topology(&given);
     let goals = [to_triangles(20_000), to_triangles(3000), within_error(0.02)];
     for goal in goals {
@@ -157,7 +159,9 @@ fn sheets_that_lie_close_together_do_not_pass_through_one_another() {
 
 #[test]
 fn the_error_bound_holds_both_ways_and_less_of_it_leaves_more_triangles() {
-    let given = bumpy(60, 30, 0.01, 0.3).as_written().unwrap();
+    let given = bumpy(60, 30, 0.01, 0.3)
+        .as_written(&Task::default())
+        .unwrap();
     let before = topology(&given);
     let mut last = usize::MAX;
     for error_mm in [0.02, 0.2, 1.0] {
@@ -193,7 +197,9 @@ fn rims_and_non_manifold_edges_stay_where_they_are() {
 
 #[test]
 fn an_error_bound_leaves_few_triangles_on_a_smooth_body() {
-    let given = bumpy(200, 100, 0.004, 2.0).as_written().unwrap();
+    let given = bumpy(200, 100, 0.004, 2.0)
+        .as_written(&Task::default())
+        .unwrap();
     let result = decimate(&given, within_error(0.1), &Task::default()).unwrap();
     assert_sound(&topology(&given), &result.mesh);
     let triangles = result.mesh.triangles().len();
@@ -263,7 +269,7 @@ proptest! {
 
     #[test]
     fn bumpy_bodies_stay_sound(seed in 0.0_f64..6.0, height in 0.0_f64..0.03, part in 3_usize..20) {
-        let given = bumpy(48, 24, height, seed).as_written().unwrap();
+        let given = bumpy(48, 24, height, seed).as_written(&Task::default()).unwrap();
         prop_assume!(meetings(&given) == 0);
         let fewer = decimated(&given, to_triangles(given.triangles().len() / part));
         assert_sound(&topology(&given), &fewer);

@@ -194,7 +194,7 @@ proptest! {
         let path = folder.path().join("any").with_extension(extension);
         write(&path, &mesh);
         let rounded = mesh.vertices_mm().iter().map(|v| v.map(|c| f64::from(c as f32))).collect();
-        let expected = TriangleMesh::new(rounded, mesh.triangles().to_vec()).unwrap().merged();
+        let expected = TriangleMesh::new(rounded, mesh.triangles().to_vec()).unwrap().merged(&Task::default()).unwrap();
         prop_assert_eq!(read(&path).unwrap(), expected);
     }
 

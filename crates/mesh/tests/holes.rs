@@ -80,7 +80,7 @@ fn assert_closed(given: &TriangleMesh, result: &HolesFilled, holes: usize) {
     assert_eq!(topology.inconsistent_edges, 0);
     assert_eq!(topology.degenerate_triangles, 0);
     assert_eq!(meetings(&result.mesh), 0);
-    let given = given.as_written().unwrap();
+    let given = given.as_written(&Task::default()).unwrap();
     assert_eq!(result.mesh.vertices_mm(), given.vertices_mm());
     let kept = &result.mesh.triangles()[..given.triangles().len()];
     assert_eq!(kept, given.triangles());
@@ -108,7 +108,7 @@ fn a_sphere_with_several_holes_is_closed_again() {
 
 #[test]
 fn one_missing_triangle_comes_back_as_it_was() {
-    let whole = sphere(12).as_written().unwrap();
+    let whole = sphere(12).as_written(&Task::default()).unwrap();
     for gone in [0, 1, 100, 333] {
         let result = filled(&without(&whole, |number| number == gone));
         let back = *result.mesh.triangles().last().unwrap();
@@ -263,7 +263,7 @@ fn faults_elsewhere_stay_and_do_not_keep_holes_from_being_filled() {
         vec![[0, 1, 2]],
     );
     let both = together(&together(&open, &other), &fin)
-        .as_written()
+        .as_written(&Task::default())
         .unwrap();
     let before = topology(&both);
     assert_eq!((before.non_manifold_edges, before.boundary_edges), (2, 6));
@@ -288,7 +288,7 @@ fn what_cannot_be_closed_without_meeting_the_surface_is_left() {
         let result = filled(&given);
         assert_eq!((result.filled, result.left.len()), (0, 1));
         assert_eq!(result.left[0].reason, HoleReason::Blocked);
-        assert_eq!(result.mesh, given.as_written().unwrap());
+        assert_eq!(result.mesh, given.as_written(&Task::default()).unwrap());
     }
     // A pin near a corner lies under one of the two ways to halve the lid alone.
     let aside = box_mesh([0.9, 2.2, 1.0], [1.1, 2.4, 2.0]);
@@ -353,7 +353,7 @@ fn closed_tiny_and_empty_meshes_pass() {
     for given in [TriangleMesh::default(), collapsed, line, torus(20, 10)] {
         let result = filled(&given);
         assert_eq!(result.filled, 0);
-        assert_eq!(result.mesh, given.as_written().unwrap());
+        assert_eq!(result.mesh, given.as_written(&Task::default()).unwrap());
     }
 }
 

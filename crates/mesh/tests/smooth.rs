@@ -107,7 +107,7 @@ proptest! {
 
     #[test]
     fn bumpy_bodies_stay_sound(seed in 0.0_f64..6.0, height in 0.0_f64..0.03) {
-        let given = bumpy(48, 24, height, seed).as_written().unwrap();
+        let given = bumpy(48, 24, height, seed).as_written(&Task::default()).unwrap();
         prop_assume!(meetings(&given) == 0);
         let smoothed = smooth(&given, 0.3, &Task::default()).unwrap();
         assert_sound(&topology(&given), &smoothed.mesh);

@@ -37,7 +37,7 @@ fn fine_box(low: [f64; 3], high: [f64; 3], times: usize) -> TriangleMesh {
             let [[a, b, c], [d, e, f]] = [*t, middles];
             triangles.extend([[a, d, f], [d, b, e], [f, e, c], [d, e, f]]);
         }
-        fine = mesh(vertices, triangles).merged();
+        fine = mesh(vertices, triangles).merged(&Task::default()).unwrap();
     }
     fine
 }

@@ -91,7 +91,9 @@ fn three_triangles_at_an_edge_are_non_manifold() {
 
 #[test]
 fn boxes_that_touch_at_a_corner_share_a_non_manifold_vertex() {
-    let boxes = together(&box_mesh([0.0; 3], [1.0; 3]), &box_mesh([1.0; 3], [2.0; 3])).merged();
+    let boxes = together(&box_mesh([0.0; 3], [1.0; 3]), &box_mesh([1.0; 3], [2.0; 3]))
+        .merged(&Task::default())
+        .unwrap();
     let topology = check(&boxes);
     assert_eq!(topology.vertices, 15);
     assert_eq!(topology.non_manifold_vertices, 1);
@@ -106,7 +108,8 @@ fn boxes_that_touch_along_an_edge_are_watertight_but_not_manifold() {
         &box_mesh([0.0; 3], [1.0; 3]),
         &box_mesh([1.0, 1.0, 0.0], [2.0, 2.0, 1.0]),
     )
-    .merged();
+    .merged(&Task::default())
+    .unwrap();
     let topology = check(&boxes);
     assert_eq!(topology.non_manifold_edges, 1);
     assert!(topology.watertight && !topology.manifold);

@@ -19,7 +19,7 @@ fn surface(volume: &Volume, settings: IsosurfaceSettings) -> TriangleMesh {
 
 fn assert_is_closed(mesh: &TriangleMesh) {
     // 32-bit coordinates hold its vertices exactly.
-    let written = mesh.as_written().unwrap();
+    let written = mesh.as_written(&Task::default()).unwrap();
     assert_eq!(written.vertices_mm(), mesh.vertices_mm());
     common::assert_is_closed(mesh);
 }

@@ -83,7 +83,7 @@ pub fn decimate(
         .transpose()?;
     let all = if error_mm.is_some() { 0 } else { usize::MAX };
     let end = goal.triangles.unwrap_or(all);
-    let given = mesh.as_written()?;
+    let given = mesh.as_written(task)?;
     let triangles = given.triangles().len();
     if triangles > MOST_TRIANGLES {
         return Err(MeshError::TooManyToDecimate { triangles });

@@ -102,7 +102,7 @@ pub fn fill_holes(
         MeshError::length("largest hole", mm)
     })?;
     let most_edges = limits.at_most_edges.unwrap_or(usize::MAX);
-    let mut mesh = mesh.as_written()?;
+    let mut mesh = mesh.as_written(task)?;
     task.begin("find holes", mesh.vertices_mm().len());
     let rims = Rims::of(&mesh, task)?;
     let mut left: Vec<HoleLeft> = rims

@@ -48,7 +48,7 @@ pub(super) fn read(path: &Path, task: &Task) -> Result<TriangleMesh, MeshError> 
     }
     let mesh = TriangleMesh::new(body.vertices_mm, body.triangles)
         .map_err(|e| malformed(path, "OBJ", e.to_string()))?;
-    Ok(mesh.merged())
+    Ok(mesh.merged(task)?)
 }
 
 /// Reads a line, and the next too where a backslash joins them; gives the number of bytes.

@@ -52,7 +52,7 @@ pub(super) fn read(path: &Path, task: &Task) -> Result<TriangleMesh, MeshError> 
     }
     let mesh = TriangleMesh::new(body.vertices_mm, body.triangles)
         .map_err(|e| malformed(path, "PLY", e.to_string()))?;
-    Ok(mesh.merged())
+    Ok(mesh.merged(task)?)
 }
 
 /// The part below the header.

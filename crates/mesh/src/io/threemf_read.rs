@@ -63,7 +63,7 @@ pub(super) fn read(path: &Path, task: &Task) -> Result<TriangleMesh, MeshError> 
     }
     let mesh = TriangleMesh::new(assembly.vertices_mm, assembly.triangles)
         .map_err(|e| malformed(path, "3MF", e.to_string()))?;
-    Ok(mesh.merged())
+    Ok(mesh.merged(task)?)
 }
 
 /// The zip archive and the models read from it so far.

@@ -53,7 +53,7 @@ pub struct Smoothed {
 /// coordinate too large for a 32-bit float, [`MeshError::Cancelled`].
 pub fn smooth(mesh: &TriangleMesh, tolerance_mm: f64, task: &Task) -> Result<Smoothed, MeshError> {
     let tolerance_mm = MeshError::length("tolerance", tolerance_mm)?;
-    let given = mesh.as_written()?;
+    let given = mesh.as_written(task)?;
     task.begin("smooth", given.vertices_mm().len() * 2 * ROUNDS);
     let neighbours = Neighbours::of(&given, task)?;
     let mut places = filtered(given.vertices_mm(), &neighbours, tolerance_mm, task)?;
@@ -159,7 +159,7 @@ fn faulty(given: &TriangleMesh, result: &TriangleMesh, task: &Task) -> Result<Ve
             note(triangle);
         }
     });
-    let (merged, numbers) = result.merged_with_numbers();
+    let (merged, numbers) = result.merged_with_numbers(task)?;
     if merged.vertices_mm().len() < numbers.len() {
         let mut times = vec![0_u32; merged.vertices_mm().len()];
         for number in &numbers {

@@ -62,7 +62,7 @@ pub(crate) fn cubes(size: i32, is_full: impl Fn([i32; 3]) -> bool) -> TriangleMe
         let triangles = sides.flat_map(|(_, side)| side.iter().copied()).collect();
         all = together(&all, &mesh(cube, triangles));
     }
-    all.merged().compacted()
+    all.merged(&Task::default()).unwrap().compacted()
 }
 
 pub(crate) fn assert_sound(before: &Topology, after: &TriangleMesh) {
@@ -74,5 +74,5 @@ pub(crate) fn assert_sound(before: &Topology, after: &TriangleMesh) {
         |t: &Topology| t.vertices as i64 - t.unused_vertices as i64 - t.triangles as i64 / 2;
     assert_eq!(handles(&topology), handles(before));
     assert_eq!(meetings(after), 0);
-    assert_eq!(&after.as_written().unwrap(), after);
+    assert_eq!(&after.as_written(&Task::default()).unwrap(), after);
 }

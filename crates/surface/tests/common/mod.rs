@@ -90,7 +90,7 @@ pub(crate) fn assert_is_closed(mesh: &TriangleMesh) {
     assert_eq!(topology.degenerate_triangles, 0);
     assert_eq!(topology.unused_vertices, 0);
     assert!(topology.volume_mm3 > 0.0);
-    let written = mesh.as_written().unwrap();
+    let written = mesh.as_written(&Task::default()).unwrap();
     assert_eq!(written.vertices_mm().len(), mesh.vertices_mm().len());
     let tree = TriangleTree::new(&written, &Task::default()).unwrap();
     let found = find_intersections(&tree, 3, &Task::default()).unwrap();
