@@ -49,6 +49,7 @@ class RenderInputs:
             "series": series_choice(properties.series),
             "one_series": properties.one_series,
             "crop": properties.crop.strip() or None,
+            "damp_metal": properties.damp_metal,
             "keep_table": not properties.leave_out_table,
             **edge_options(properties),
             **after_care_options(properties),

@@ -120,6 +120,7 @@ class BONEMESH_PT_advanced(Panel):
         column.prop(properties, "series")
         column.prop(properties, "one_series")
         column.prop(properties, "crop")
+        column.prop(properties, "damp_metal")
         column.prop(properties, "method")
         table = column.row()
         table.active = not uses_edge_points(properties)

@@ -171,6 +171,11 @@ class BonemeshProperties(PropertyGroup):
         description="Recognises the scanner's table and headrest, where they touch no bone, and leaves them out of a closed surface (isosurface, labelled tetrahedra)",
         default=True,
     )
+    damp_metal: BoolProperty(
+        name="Damp Metal Streaks",
+        description="Takes most of the streaks of fillings, crowns, implants and screws off the slices that they are in; takes a few seconds for each of these slices",
+        default=False,
+    )
     fill_holes: EnumProperty(
         name="Fill Holes",
         description="Which holes of the mesh are closed; isosurfaces and labelled tetrahedra have none",

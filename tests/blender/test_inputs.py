@@ -32,6 +32,7 @@ def fields(folder: Path, **changes: Any) -> Any:
         "series": "",
         "one_series": False,
         "crop": "",
+        "damp_metal": False,
         "leave_out_table": True,
         "fill_holes": "none",
         "holes_mm": 10.0,
@@ -59,6 +60,12 @@ def test_the_table_is_left_out_unless_it_is_wanted(tmp_path: Path) -> None:
     for leave_out in (True, False):
         inputs = RenderInputs.read(fields(tmp_path, leave_out_table=leave_out))
         assert inputs.options["keep_table"] is not leave_out
+
+
+def test_streaks_of_metal_are_damped_only_when_asked_for(tmp_path: Path) -> None:
+    for damp in (True, False):
+        inputs = RenderInputs.read(fields(tmp_path, damp_metal=damp))
+        assert inputs.options["damp_metal"] is damp
 
 
 def test_a_number_is_the_one_that_was_typed(tmp_path: Path) -> None:

@@ -33,6 +33,7 @@ ADVANCED = [
     "series",
     "one_series",
     "crop",
+    "damp_metal",
     "method",
     "leave_out_table",
     "sigma",

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use bonemesh_cloud::CloudError;
 use bonemesh_dicom::DicomError;
 use bonemesh_mesh::MeshError;
+use bonemesh_metal::MetalError;
 use bonemesh_phantom::PhantomError;
 use bonemesh_roi::RoiError;
 use bonemesh_segment::SegmentError;
@@ -26,6 +27,9 @@ pub enum Error {
     /// The volume or its crop box.
     #[error(transparent)]
     Volume(#[from] VolumeError),
+    /// Metal in the volume.
+    #[error(transparent)]
+    Metal(#[from] MetalError),
     /// Threshold or edges.
     #[error(transparent)]
     Segment(#[from] SegmentError),
@@ -116,6 +120,7 @@ impl Error {
             Self::Cancelled(_)
                 | Self::Dicom(DicomError::Cancelled(_))
                 | Self::VolumeFile(VolumeFileError::Cancelled(_))
+                | Self::Metal(MetalError::Cancelled(_))
                 | Self::Segment(SegmentError::Cancelled(_))
                 | Self::Cloud(CloudError::Cancelled(_))
                 | Self::Surface(SurfaceError::Cancelled(_))

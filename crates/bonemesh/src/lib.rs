@@ -37,6 +37,7 @@ pub mod cli;
 mod error;
 mod left_out;
 mod memory;
+mod metal;
 mod of_cloud;
 mod panics;
 mod picture;
@@ -51,6 +52,7 @@ mod thresholds;
 pub use after_care::{AfterCare, AfterCareReport, Cavities, Holes, LeftHole, MOST_NAMED, care_for};
 pub use check::{Place, PrintCheck, check, wall_thickness};
 pub use error::Error;
+pub use metal::MetalReport;
 pub use panics::hush_foreign_panics;
 pub use picture::{check_picture_target, write_histogram};
 pub use region::{RegionRequest, RegionResult, select_roi};
@@ -77,6 +79,7 @@ pub use bonemesh_mesh::{
     check_target, decimate, fill_cavities, fill_holes, find_intersections, keep_islands, read_mesh,
     smooth, write_mesh,
 };
+pub use bonemesh_metal::{Metal, MetalError, Streaks, damp_metal, find_metal};
 pub use bonemesh_phantom::{
     Phantom, PhantomError, ScanSettings, WrittenPhantom, model_images, scan as scan_phantom,
     write_phantom,

@@ -13,6 +13,7 @@ use bonemesh_volume::{Volume, Voxels};
 
 use crate::after_care::cared_for;
 use crate::left_out::leave_out;
+use crate::metal::without_streaks;
 use crate::of_cloud::cloud_to_mesh;
 use crate::report::{RenderReport, Seconds, check};
 use crate::source::{Reading, Source};
@@ -73,6 +74,12 @@ pub fn point_cloud(
     task: &Task,
 ) -> Result<PointCloud, Error> {
     pool(settings.threads)?.install(|| {
+        let damped = if settings.damp_metal {
+            without_streaks(volume, settings, task)?.0
+        } else {
+            Cow::Borrowed(volume)
+        };
+        let volume = &*damped;
         let settings = &chosen(volume, settings, task)?.of(settings);
         let found = volume_to_cloud(volume, settings, frame, &mut Seconds::default(), task)?;
         Ok(found.0)
@@ -99,6 +106,8 @@ pub fn mesh_cloud(cloud: &PointCloud, settings: &Settings, task: &Task) -> Resul
 fn volume_to_mesh(volume: &Volume, settings: &Settings, task: &Task) -> Result<Rendered, Error> {
     let mut seconds = Seconds::default();
     let mut clock = Instant::now();
+    let (volume, metal) = without_streaks(volume, settings, task)?;
+    let volume = &*volume;
     let chosen = chosen(volume, settings, task)?;
     let settings = &chosen.of(settings);
     let threshold_s = lap(&mut clock);
@@ -115,6 +124,11 @@ fn volume_to_mesh(volume: &Volume, settings: &Settings, task: &Task) -> Result<R
     rendered.report.spacing_mm = Some(volume.geometry().spacing_mm());
     rendered.report.threshold_hu = Some(settings.threshold.hu());
     rendered.report.threshold_reason = chosen.reason;
+    rendered
+        .report
+        .warnings
+        .extend(metal.map(|metal| metal.note()));
+    rendered.report.metal = metal;
     Ok(rendered)
 }
 

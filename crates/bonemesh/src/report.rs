@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::after_care::AfterCareReport;
 use crate::memory::peak_mib;
+use crate::metal::MetalReport;
 use crate::{Error, Settings, VERSION};
 
 /// Wall-clock seconds of each step.
@@ -14,7 +15,7 @@ use crate::{Error, Settings, VERSION};
 pub struct Seconds {
     /// Files to volume.
     pub read: f64,
-    /// Threshold and Canny.
+    /// Metal, threshold and Canny.
     pub edges: f64,
     /// Edge pixels to points, sampling included.
     pub cloud: f64,
@@ -106,13 +107,15 @@ pub struct RenderReport {
     pub left_out_table: Option<LeftOutIslands>,
     /// Islands too small for a bone; `None` if there are none.
     pub left_out_specks: Option<LeftOutIslands>,
+    /// Metal in the volume; `None` if there is none.
+    pub metal: Option<MetalReport>,
     /// What was done to the finished mesh; `None` if nothing was asked for.
     pub after_care: Option<AfterCareReport>,
     /// Seconds of each step.
     pub seconds: Seconds,
     /// Peak memory of this process in MiB, where the system tells.
     pub peak_mib: Option<f64>,
-    /// What the reader had to say of the series.
+    /// What the reader had to say of the series, and of metal in it.
     pub warnings: Vec<String>,
 }
 
@@ -141,6 +144,7 @@ impl RenderReport {
             volume_mm3: check.volume_mm3,
             left_out_table: None,
             left_out_specks: None,
+            metal: None,
             after_care: None,
             seconds,
             peak_mib: peak_mib(),

@@ -142,6 +142,8 @@ pub struct Settings {
     /// Leaves the scanner's table and headrest out of an isosurface or labelled tetrahedra, where
     /// they touch no bone.
     pub leave_out_table: bool,
+    /// Damps the streaks of metal before anything else is done.
+    pub damp_metal: bool,
     /// Part of the volume to use; `None` uses all of it.
     pub crop: Option<CropBox>,
     /// Which series of the folder; `None` takes the only plausible one.
@@ -173,6 +175,7 @@ impl Default for Settings {
             scale: PoissonSettings::default().scale,
             true_edges: true,
             leave_out_table: true,
+            damp_metal: false,
             crop: None,
             series: None,
             one_series: false,

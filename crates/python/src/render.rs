@@ -54,6 +54,8 @@ pub(crate) fn methods() -> Vec<&'static str> {
 ///   the grey equals the threshold.
 /// - `keep_table`: keeps the scanner's table and headrest, which an isosurface and a labelled one
 ///   leave out where they touch no bone (`report["left_out_table"]`).
+/// - `damp_metal`: damps the streaks of metal before anything else is done; `report["metal"]` tells of
+///   metal either way, None if there is none.
 /// - `holes`: "all", or the longest extent (mm) of the holes filled; None fills none.
 /// - `islands`: "largest", or the least volume (mm3) of the islands kept; None keeps all but
 ///   specks of an isosurface or a labelled one, of less than 1 mm3 (`report["left_out_specks"]`).
@@ -69,7 +71,7 @@ pub(crate) fn methods() -> Vec<&'static str> {
 #[pyfunction]
 #[pyo3(signature = (
     path_or_volume, *, threshold_hu=Threshold::skull(), method=None, sigma=1.0, series=None,
-    one_series=false, crop=None, sample_percent=None, sampler="uniform", seed=0, alpha_mm=None, radii_mm=None, depth=8, scale=1.1, true_edges=true, keep_table=false, holes=None, islands=None,
+    one_series=false, crop=None, sample_percent=None, sampler="uniform", seed=0, alpha_mm=None, radii_mm=None, depth=8, scale=1.1, true_edges=true, keep_table=false, damp_metal=false, holes=None, islands=None,
     cavities=None, smooth_mm=None, triangles=None, decimate_mm=None, threads=None, progress=None,
     cancel=None
 ))]
@@ -92,6 +94,7 @@ pub(crate) fn render(
     scale: f64,
     true_edges: bool,
     keep_table: bool,
+    damp_metal: bool,
     holes: Option<Closed>,
     islands: Option<Kept>,
     cavities: Option<Filled>,
@@ -119,6 +122,7 @@ pub(crate) fn render(
         scale,
         true_edges,
         leave_out_table: !keep_table,
+        damp_metal,
         crop: crop.map(|c| c.0),
         series: series.map(|s| s.0),
         one_series,

@@ -142,6 +142,9 @@ pub(super) struct Render {
     /// Mesh file to write (.stl, .ply, .obj, .3mf).
     #[arg(short, long, value_parser = mesh_file())]
     pub(super) output: PathBuf,
+    /// Damps the streaks of metal (fillings, implants, screws) before anything else is done.
+    #[arg(long)]
+    pub(super) damp_metal: bool,
     #[command(flatten)]
     pub(super) edges: EdgeArguments,
     #[command(flatten)]

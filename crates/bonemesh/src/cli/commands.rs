@@ -51,7 +51,10 @@ fn info(arguments: &Info, task: &Task) -> Result<Answer, Error> {
 
 fn run_render(arguments: &Render, task: &Task) -> Result<Answer, Error> {
     bonemesh_mesh::check_target(&arguments.output)?;
-    let settings = arguments.edges.settings(Some(&arguments.surface));
+    let settings = Settings {
+        damp_metal: arguments.damp_metal,
+        ..arguments.edges.settings(Some(&arguments.surface))
+    };
     let rendered = render(&arguments.directory, &settings, task)?;
     save(rendered, &arguments.output, task)
 }

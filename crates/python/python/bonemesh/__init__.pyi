@@ -380,6 +380,7 @@ def render(
     scale: float = 1.1,
     true_edges: bool = True,
     keep_table: bool = False,
+    damp_metal: bool = False,
     holes: Literal["all"] | float | None = None,
     islands: Literal["largest"] | float | None = None,
     cavities: Literal["all"] | float | None = None,

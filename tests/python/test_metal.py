@@ -1,0 +1,65 @@
+"""Metal is told of every rendering, and its streaks are damped when asked for."""
+
+from __future__ import annotations
+
+import bonemesh
+import numpy as np
+import pytest
+
+SHAPE = (24, 80, 80)
+
+
+@pytest.fixture(scope="module")
+def jaw() -> np.ndarray:
+    """A ring of bone in soft tissue, without metal."""
+    rows, columns = np.mgrid[: SHAPE[1], : SHAPE[2]]
+    away = np.hypot(rows - 40, columns - 40)
+    tissue = np.select([(away >= 15) & (away < 20), away < 36], [1200, 40], -1000)
+    noise = (5 * columns + 3 * rows) % 13
+    return np.broadcast_to(tissue + noise, SHAPE).astype(np.int16)
+
+
+@pytest.fixture(scope="module")
+def crowned(jaw: np.ndarray) -> np.ndarray:
+    """The same with a crown in slices 10 to 13 and a streak across."""
+    hu = jaw.copy()
+    rows, columns = np.mgrid[: SHAPE[1], : SHAPE[2]]
+    is_streaked = (np.abs(rows - 24) < 2) & (jaw[0] > -500)
+    hu[10:14, is_streaked] += 420
+    hu[10:14, np.hypot(rows - 24, columns - 28) < 4] = 3071
+    return hu
+
+
+def volume(hu: np.ndarray) -> bonemesh.Volume:
+    return bonemesh.Volume(hu, np.diag([0.6, 0.6, 1.0, 1.0]))
+
+
+def test_a_report_tells_of_metal(crowned):
+    report = bonemesh.render(volume(crowned)).report
+    metal = report["metal"]
+    assert metal["pieces"] == 1 and metal["slices"] == [10, 13]
+    assert metal["z_mm"] == pytest.approx([10, 13])
+    assert metal["volume_mm3"] == pytest.approx((crowned >= 3000).sum() * 0.36)
+    assert metal["damped"] is False
+    assert any("metal" in note for note in report["warnings"])
+
+
+def test_damping_takes_the_web_of_a_streak_away(crowned):
+    usual = bonemesh.render(volume(crowned))
+    damped = bonemesh.render(volume(crowned), damp_metal=True)
+    assert damped.report["metal"]["damped"] is True
+
+    def web(mesh: bonemesh.Mesh) -> int:
+        x, y, _ = mesh.vertices.T
+        return int(((x > 35) & (y > 12) & (y < 17)).sum())
+
+    assert web(usual) > 50
+    assert 2 * web(damped) < web(usual)
+
+
+def test_without_metal_damping_changes_nothing(jaw):
+    usual = bonemesh.render(volume(jaw))
+    damped = bonemesh.render(volume(jaw), damp_metal=True)
+    assert usual.report["metal"] is None and damped.report["metal"] is None
+    assert (usual.vertices == damped.vertices).all()
+    assert (usual.triangles == damped.triangles).all()
