@@ -106,6 +106,7 @@ pub fn mesh_cloud(cloud: &PointCloud, settings: &Settings, task: &Task) -> Resul
 fn volume_to_mesh(volume: &Volume, settings: &Settings, task: &Task) -> Result<Rendered, Error> {
     let mut seconds = Seconds::default();
     let mut clock = Instant::now();
+    refuse_choices(settings)?;
     let (volume, metal) = without_streaks(volume, settings, task)?;
     let volume = &*volume;
     let chosen = chosen(volume, settings, task)?;
@@ -132,12 +133,11 @@ fn volume_to_mesh(volume: &Volume, settings: &Settings, task: &Task) -> Result<R
     Ok(rendered)
 }
 
-fn volume_to_closed_surface(
-    volume: &Volume,
-    settings: &Settings,
-    mut seconds: Seconds,
-    task: &Task,
-) -> Result<Rendered, Error> {
+/// Refuses choices that only edge points have, before any work is done.
+fn refuse_choices(settings: &Settings) -> Result<(), Error> {
+    if !settings.method.needs_voxels() {
+        return Ok(());
+    }
     let refuse = |choice| Error::NotForMethod {
         choice,
         method: settings.method.name(),
@@ -148,6 +148,15 @@ fn volume_to_closed_surface(
     if settings.alpha_mm.is_some() || settings.alpha_rule != AlphaRule::MeanDistance {
         return Err(refuse("alpha"));
     }
+    Ok(())
+}
+
+fn volume_to_closed_surface(
+    volume: &Volume,
+    settings: &Settings,
+    mut seconds: Seconds,
+    task: &Task,
+) -> Result<Rendered, Error> {
     let mut clock = Instant::now();
     let cropped = settings
         .crop

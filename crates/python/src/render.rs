@@ -75,7 +75,7 @@ pub(crate) fn methods() -> Vec<&'static str> {
     cavities=None, smooth_mm=None, triangles=None, decimate_mm=None, threads=None, progress=None,
     cancel=None
 ))]
-#[allow(clippy::too_many_arguments)] // keyword arguments, as Python has them
+#[allow(clippy::too_many_arguments, clippy::fn_params_excessive_bools)] // keyword arguments, as Python has them
 pub(crate) fn render(
     py: Python<'_>,
     path_or_volume: &Bound<'_, PyAny>,
