@@ -137,8 +137,11 @@ mod tests {
         let pairs = before.places.iter().zip(&after.places).zip(&before.axes);
         for ((from, to), axis) in pairs {
             for k in 0..3 {
-                let moves = usize::from(*axis) == k && from[k].floor() == to[k].floor();
-                assert!(from[k] == to[k] || moves, "{from:?} {to:?}");
+                let moves = usize::from(*axis) == k && from[k] as usize == to[k] as usize;
+                assert!(
+                    moves || from[k].to_bits() == to[k].to_bits(),
+                    "{from:?} {to:?}"
+                );
             }
         }
     }
