@@ -1,7 +1,7 @@
 //! Which voxels are metal.
 //!
-//! 1. `bounds`: the box around everything from [`METAL_HU`] up; most scans have none, which one quick
-//!    pass tells.
+//! 1. `bright::count`: how much there is from [`METAL_HU`] up; most scans have none, which one quick pass tells.
+//!    `bounds`: the box around it.
 //! 2. Pieces of such voxels that touch, of at least [`LEAST_MM3`].
 //! 3. What is metal for certain: values beyond any tissue's ([`CERTAIN_HU`]), or a flat top where
 //!    the scanner's scale ends.
@@ -10,19 +10,20 @@
 //! 5. The rim: voxels beside metal that it shares.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
 
 use bonemesh_segment::{Connectivity, Mask, connected_components};
 use bonemesh_task::{Cancelled, Task};
 use bonemesh_volume::{Affine, CropBox, Geometry, Volume, Voxels};
-use ndarray::parallel::prelude::*;
-use ndarray::{Array3, ArrayView2, Axis};
+use ndarray::Array3;
 
+use crate::bright::{Bounds, bounds, count};
 use crate::streaks::{Streaks, streaks_of};
 use crate::{METAL_HU, MetalError};
 
 /// Smaller pieces make no streaks that reach far: a ball of 2 mm has 4 mm3.
 const LEAST_MM3: f64 = 4.0;
+/// Part of a volume that metal may fill: where more of it is so bright, values are no Hounsfield units.
+const MOST: f64 = 0.1;
 /// No tissue comes near this, whatever the kernel.
 const CERTAIN_HU: f32 = 4000.0;
 /// Voxels beside metal from here up are partly metal.
@@ -55,7 +56,10 @@ pub struct Metal {
 /// [`MetalError::Cancelled`]; [`MetalError::Segment`] and [`MetalError::Volume`] for noise of some thousand million voxels.
 pub fn find_metal(volume: &Volume, task: &Task) -> Result<Option<Metal>, MetalError> {
     task.begin("metal", volume.geometry().shape()[0]);
-    if bounds(volume, task)?.is_none() {
+    let voxel_mm3 = volume.geometry().patient_from_voxel().determinant().abs();
+    let voxels: usize = volume.geometry().shape().iter().product();
+    let above = count(volume, task)?;
+    if (above as f64) * voxel_mm3 < LEAST_MM3 || above as f64 > MOST * voxels as f64 {
         return Ok(None);
     }
     let ordered = volume.in_patient_order(task)?;
@@ -73,7 +77,6 @@ pub fn find_metal(volume: &Volume, task: &Task) -> Result<Option<Metal>, MetalEr
     }
     let slices: BTreeSet<usize> = kept.iter().flat_map(Piece::slices).collect();
     let streaks = streaks_of(&ordered, &slices, task)?;
-    let voxel_mm3 = ordered.geometry().patient_from_voxel().determinant().abs();
     let count: usize = kept.iter().map(|piece| piece.voxels.len()).sum();
     let (slices, z_mm) = scan.reach(&kept, volume.geometry());
     Ok(Some(Metal {
@@ -86,9 +89,6 @@ pub fn find_metal(volume: &Volume, task: &Task) -> Result<Option<Metal>, MetalEr
         voxels: scan.with_rim(&kept),
     }))
 }
-
-/// Slices, rows and columns.
-type Bounds = [Range<usize>; 3];
 
 /// Voxels that touch.
 #[derive(Clone, Debug, Default)]
@@ -240,68 +240,10 @@ pub(crate) fn stored_from_ordered(
     }
 }
 
-/// The box around all voxels from [`METAL_HU`] up; `None` if there are none.
-fn bounds(volume: &Volume, task: &Task) -> Result<Option<Bounds>, Cancelled> {
-    match volume.voxels() {
-        Voxels::I16(hu) => of_slices(hu, METAL_HU as i16, task),
-        Voxels::F32(hu) => of_slices(hu, METAL_HU, task),
-    }
-}
-
-fn of_slices<T>(hu: &Array3<T>, least: T, task: &Task) -> Result<Option<Bounds>, Cancelled>
-where
-    T: Copy + PartialOrd + Send + Sync,
-{
-    let slices: Vec<Option<[Range<usize>; 2]>> = hu
-        .axis_iter(Axis(0))
-        .into_par_iter()
-        .map(|slice| {
-            task.check()?;
-            Ok(of_slice(&slice, least))
-        })
-        .collect::<Result<_, Cancelled>>()?;
-    let mut found: Option<Bounds> = None;
-    for (slice, [rows, columns]) in slices
-        .into_iter()
-        .enumerate()
-        .filter_map(|(k, b)| Some((k, b?)))
-    {
-        found = Some(match found {
-            None => [slice..slice + 1, rows, columns],
-            Some([k, j, i]) => [k.start..slice + 1, hull(j, rows), hull(i, columns)],
-        });
-    }
-    Ok(found)
-}
-
-fn of_slice<T: Copy + PartialOrd>(hu: &ArrayView2<'_, T>, least: T) -> Option<[Range<usize>; 2]> {
-    let mut found: Option<[Range<usize>; 2]> = None;
-    for (row, line) in hu.rows().into_iter().enumerate() {
-        // Counting all of a row is quicker than stopping at the first.
-        if line.iter().filter(|v| **v >= least).count() == 0 {
-            continue;
-        }
-        for (column, _) in line.iter().enumerate().filter(|(_, v)| **v >= least) {
-            let here = [row..row + 1, column..column + 1];
-            found = Some(match found {
-                None => here,
-                Some([rows, columns]) => {
-                    let [row, column] = here;
-                    [hull(rows, row), hull(columns, column)]
-                }
-            });
-        }
-    }
-    found
-}
-
-fn hull(a: Range<usize>, b: Range<usize>) -> Range<usize> {
-    a.start.min(b.start)..a.end.max(b.end)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ndarray::Axis;
 
     const AFFINE: [[f64; 3]; 4] = [
         [0.5, 0.0, 0.0],

@@ -47,6 +47,7 @@
 //! X.-Y. Gong et al., Dentomaxillofacial Radiology 42(4), 2013, for dental fillings.
 #![forbid(unsafe_code)]
 
+mod bright;
 mod damp;
 mod find;
 mod project;
