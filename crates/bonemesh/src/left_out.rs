@@ -29,15 +29,19 @@ pub(crate) fn leave_out(
         Some(_) => 0.0,
     };
     let are_taken = |islands: &[Island<'_>]| -> Result<Vec<bool>, Error> {
-        let mut taken = are_specks(islands, least_mm3);
-        left_out.specks = LeftOutIslands::of(islands, &taken);
-        if settings.leave_out_table {
-            let are_table = are_table(islands, volume, task)?;
-            left_out.table = LeftOutIslands::of(islands, &are_table);
-            for (taken, is_table) in taken.iter_mut().zip(are_table) {
-                *taken |= is_table;
-            }
+        let specks = are_specks(islands, least_mm3);
+        let table = if settings.leave_out_table {
+            are_table(islands, volume, task)?
+        } else {
+            vec![false; islands.len()]
+        };
+        let taken: Vec<bool> = specks.iter().zip(&table).map(|(a, b)| a | b).collect();
+        if taken.iter().all(|taken| *taken) {
+            // Nothing but specks beside what looks like a table: then that is what was scanned.
+            return Ok(vec![false; islands.len()]);
         }
+        left_out.specks = LeftOutIslands::of(islands, &specks);
+        left_out.table = LeftOutIslands::of(islands, &table);
         Ok(taken)
     };
     let kept = take_islands(mesh, are_taken, task)?;

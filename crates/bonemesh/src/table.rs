@@ -4,7 +4,7 @@
 //! it that of the outside, while soft tissue covers a patient's bones), and what is long is
 //! extruded: it has the same outline slice after slice. Of a patient, whose bones are covered, every
 //! bare island goes; of dry bone only what is extruded all along the stack. What hangs together with
-//! bone stays.
+//! bone stays, and so does what has many times the volume of all else: that is the bone.
 
 use bonemesh_mesh::Island;
 use bonemesh_segment::{Mask, outside_air};
@@ -32,6 +32,9 @@ const OUTLINE_SAMPLES: usize = 100_000;
 const CELL_MM: f64 = 3.0;
 const SLAB_MM: f64 = 5.0;
 const SLABS_APART: i32 = 4;
+/// The bone has at least this part of a table's volume: a crumb beside a dry long bone, which is as
+/// extruded as a table, is not the patient.
+const BONE_BESIDE_TABLE: f64 = 0.1;
 /// Part of an outline that an extruded body repeats, and of the stack that it runs along.
 const SAME: f64 = 0.8;
 const ALONG: f64 = 0.9;
@@ -82,7 +85,8 @@ fn are_foreign(looks: &[Look]) -> Vec<bool> {
     };
     let is_patient = bone.outside < COVERED;
     let is_foreign = |(number, look): (usize, &Look)| {
-        number != main && look.is_bare() && (is_patient || look.is_extruded)
+        let is_beside_bone = bone.volume_mm3 >= BONE_BESIDE_TABLE * look.volume_mm3;
+        number != main && is_beside_bone && look.is_bare() && (is_patient || look.is_extruded)
     };
     looks.iter().enumerate().map(is_foreign).collect()
 }
@@ -99,7 +103,7 @@ impl Scan<'_> {
     fn look(&self, island: &Island<'_>) -> Look {
         let [air, outside] = self.air_beside(island);
         let look = Look {
-            volume_mm3: island.volume_mm3,
+            volume_mm3: island.volume_mm3.abs(),
             air,
             outside,
             is_extruded: false,
@@ -216,6 +220,14 @@ mod tests {
             look(5e4, 0.95, false),
         ];
         assert_eq!(are_foreign(&looks), [false, true, false]);
+    }
+
+    #[test]
+    fn a_crumb_beside_a_long_bone_does_not_make_that_a_table() {
+        for covered in [0.05, 0.9] {
+            let looks = [look(2e4, 0.9, true), look(1e3, covered, false)];
+            assert_eq!(are_foreign(&looks), [false, false]);
+        }
     }
 
     #[test]

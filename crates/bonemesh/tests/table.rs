@@ -149,3 +149,34 @@ fn a_scan_of_one_speck_shows_it() {
     let rendered = render_volume(&volume, &Settings::default(), &Task::default()).unwrap();
     assert_eq!(rendered.report.components, 1);
 }
+
+#[test]
+fn a_dry_long_bone_is_no_table_whatever_lies_beside_it() {
+    fn shaft([x, y, _]: [f64; 3]) -> bool {
+        (6.0..12.0).contains(&x.hypot(y))
+    }
+    let beside = |[x, y, z]: [f64; 3], mm: f64| {
+        (x - 24.0).abs() < mm && y.abs() < mm && (z - 30.0).abs() < mm
+    };
+    for piece_mm in [0.0, 1.0, 3.0, 5.0] {
+        let shape = [36, 60, 50];
+        let affine = Affine::from_axes(
+            [1.5, 0.0, 0.0],
+            [0.0, 1.5, 0.0],
+            [0.0, 0.0, 2.0],
+            [-37.0, -38.0, 0.0],
+        );
+        let hu = Array3::from_shape_fn(shape, |(k, j, i)| {
+            let at = affine.apply([i as f64, j as f64, k as f64]);
+            if shaft(at) || beside(at, piece_mm) {
+                BONE
+            } else {
+                AIR
+            }
+        });
+        let volume = Volume::new(Voxels::I16(hu), Geometry::new(shape, affine).unwrap()).unwrap();
+        let rendered = render_volume(&volume, &Settings::default(), &Task::default()).unwrap();
+        assert_eq!(rendered.report.left_out_table, None);
+        assert!(rendered.report.volume_mm3 > 15_000.0);
+    }
+}
