@@ -28,7 +28,7 @@ METHODS = [
     (
         "labelled",
         "Labelled Tetrahedra",
-        "Closed surface of Delaunay tetrahedra, each bone or not by what lies in it; weaker stairs on thick slices",
+        "Closed surface of Delaunay tetrahedra, each bone or not by what lies in it; fewer triangles, more time",
     ),
     (
         "ball-pivoting",

@@ -74,7 +74,7 @@ def draw(
         shape = plotter.meshes[-1]
         middle = np.array(shape.center)
         plotter.camera.focal_point = middle
-        plotter.camera.position = middle + VIEW_FROM * shape.length * 1.6
+        plotter.camera.position = middle + VIEW_FROM * shape.length * 2.0
         plotter.camera.up = (0.0, 0.0, 1.0)
     with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
         made = Path(scratch) / "picture.png"

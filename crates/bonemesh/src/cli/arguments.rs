@@ -68,8 +68,8 @@ pub(super) struct Info {
 
 #[derive(Debug, Args)]
 pub(super) struct EdgeArguments {
-    /// Bone is strictly above this Hounsfield value; or `auto`, or a name that `bonemesh histogram`
-    /// lists, such as skull or cortical.
+    /// Bone is strictly above this Hounsfield value; or `auto`, or a published one that `bonemesh
+    /// histogram` lists, such as skull or cortical.
     #[arg(
         short = 't',
         long,
