@@ -75,7 +75,10 @@ impl MetalReport {
             None if self.damped => "; its streaks were damped".to_owned(),
             None => String::new(),
         };
-        let remedy = if self.damped {
+        let is_worse = matches!((self.spread_hu, self.spread_damped_hu), (Some(before), Some(after)) if after > before);
+        let remedy = if is_worse {
+            "; damping did no good here: render without it"
+        } else if self.damped {
             "; the surface beside it is still less true than elsewhere"
         } else {
             "; the surface in these slices, most of all beside the metal, is less true than elsewhere (--damp-metal damps streaks)"

@@ -110,7 +110,7 @@ fn spread(volume: &Volume, slices: &[usize], task: &Task) -> Result<Option<f64>,
 }
 
 /// Differences are whole and at most the range of soft tissue.
-const RANGE: usize = 802;
+const RANGE: usize = (RANGE_HU[1] - RANGE_HU[0]) as usize + 2;
 
 /// How often each size of difference occurs in a slice, along rows and columns.
 fn differences(volume: &Volume, slice: usize) -> Vec<usize> {
