@@ -45,6 +45,11 @@ def after_care_lines(report: Report) -> list[str]:
     if removed is not None:
         kept = but(report.get("held_vertices"), "left as they were")
         lines.append(f"{counted(removed, 'triangle', 'triangles')} removed{kept}")
+    wanted = report.get("missed_triangles")
+    if wanted is not None:
+        lines.append(
+            f"Not as few as {wanted:,}: the surface would lose its shape or pass through itself"
+        )
     return lines or ["Nothing had to be removed"]
 
 

@@ -50,7 +50,7 @@ class RenderInputs:
             "one_series": properties.one_series,
             "crop": properties.crop.strip() or None,
             "damp_metal": properties.damp_metal,
-            "keep_table": not properties.leave_out_table,
+            **voxel_options(properties),
             **edge_options(properties),
             **after_care_options(properties),
         }
@@ -85,6 +85,13 @@ class RegionInputs:
 def uses_edge_points(properties: Any) -> bool:
     """Whether the method makes its surface of edge points."""
     return properties.method not in METHODS_OF_VOXELS
+
+
+def voxel_options(properties: Any) -> dict[str, Any]:
+    """The keyword arguments of bonemesh.render for the voxels, where the method starts from them."""
+    if uses_edge_points(properties):
+        return {}
+    return {"keep_table": not properties.leave_out_table}
 
 
 def edge_options(properties: Any) -> dict[str, Any]:

@@ -20,6 +20,7 @@ NOTHING = {
     "put_back_vertices": None,
     "removed_triangles": None,
     "held_vertices": None,
+    "missed_triangles": None,
     "seconds": 0.1,
 }
 
@@ -47,6 +48,13 @@ NOTHING = {
         (
             {"removed_triangles": 5000, "held_vertices": 20},
             ["5,000 triangles removed, 20 vertices left as they were"],
+        ),
+        (
+            {"removed_triangles": 7, "held_vertices": 0, "missed_triangles": 1000},
+            [
+                "7 triangles removed",
+                "Not as few as 1,000: the surface would lose its shape or pass through itself",
+            ],
         ),
         ({"removed_triangles": 0, "held_vertices": 0}, ["0 triangles removed"]),
         (

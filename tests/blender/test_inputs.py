@@ -60,6 +60,9 @@ def test_the_table_is_left_out_unless_it_is_wanted(tmp_path: Path) -> None:
     for leave_out in (True, False):
         inputs = RenderInputs.read(fields(tmp_path, leave_out_table=leave_out))
         assert inputs.options["keep_table"] is not leave_out
+        # Of edge points it is never left out, and the library refuses to be asked.
+        points = fields(tmp_path, leave_out_table=leave_out, method="alpha")
+        assert "keep_table" not in RenderInputs.read(points).options
 
 
 def test_streaks_of_metal_are_damped_only_when_asked_for(tmp_path: Path) -> None:

@@ -59,6 +59,12 @@ def test_an_island_stays_with_its_cavity(shell: bonemesh.Mesh) -> None:
     both = bonemesh.Mesh(
         vertices, np.vstack([shell.triangles, faces + len(shell.vertices)])
     )
+    place = tuple(both.vertices[0])
+    at_place = bonemesh.keep_islands(both, islands=[place])
+    assert at_place.report["removed_islands"] == 1
+    assert (at_place.vertices == place).all(axis=1).any()
+    with pytest.raises(bonemesh.BonemeshError, match="not near the mesh"):
+        bonemesh.keep_islands(both, islands=[(0.0, 1e4, 0.0)])
     for islands in ("largest", 1.0):
         kept = bonemesh.keep_islands(both, islands=islands)
         np.testing.assert_array_equal(kept.vertices, shell.vertices)

@@ -157,6 +157,11 @@ def test_a_mesh_is_made_with_the_threshold_suggested(volume):
     same = bonemesh.render(volume, threshold_hu=auto["threshold_hu"])
     assert (mesh.vertices == same.vertices).all()
     assert same.report["threshold_reason"] is None
+    for named in bonemesh.suggest_thresholds(volume):
+        if named["name"] == "teeth":  # denser than the phantoms' bone
+            continue
+        report = bonemesh.render(volume, threshold_hu=named["name"]).report
+        assert report["threshold_hu"] == named["threshold_hu"]
     points = bonemesh.point_cloud(volume, threshold_hu="auto")
     again = bonemesh.point_cloud(volume, threshold_hu=auto["threshold_hu"])
     assert (points == again).all()

@@ -32,7 +32,7 @@ pub enum Holes {
 }
 
 /// What is done to a finished mesh, in the order of the fields; by default nothing.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Debug, PartialEq, Default)]
 pub struct AfterCare {
     /// Which holes are filled; `None` fills none.
     pub holes: Option<Holes>,
@@ -70,6 +70,8 @@ pub struct AfterCareReport {
     pub put_back_vertices: Option<usize>,
     /// Triangles that decimation took away; `None` without decimation.
     pub removed_triangles: Option<usize>,
+    /// The number of triangles that was asked for, if there are more.
+    pub missed_triangles: Option<usize>,
     /// Vertices that decimation left alone with their triangles, because the surface would have
     /// passed through itself or left the error bound.
     pub held_vertices: Option<usize>,
@@ -141,7 +143,7 @@ pub fn care_for(
         };
         mesh = report.with_lids(fill_holes(&mesh, limits, task)?);
     }
-    if let Some(islands) = care.islands {
+    if let Some(islands) = &care.islands {
         let had_triangles = !mesh.triangles().is_empty();
         let kept = keep_islands(&mesh, islands, task)?;
         if had_triangles && kept.mesh.triangles().is_empty() {
@@ -167,6 +169,7 @@ pub fn care_for(
         let decimated = decimate(&mesh, care.decimation, task)?;
         let left = decimated.mesh.triangles().len();
         report.removed_triangles = Some(mesh.triangles().len() - left);
+        report.missed_triangles = care.decimation.triangles.filter(|wanted| left > *wanted);
         report.held_vertices = Some(decimated.held_vertices);
         mesh = decimated.mesh;
     }
@@ -220,21 +223,35 @@ pub(crate) fn cared_for(
     report.watertight = topology.watertight;
     report.manifold = topology.manifold;
     report.components = topology.components;
+    report.cavities = topology.cavities;
     report.volume_mm3 = topology.volume_mm3;
     report.seconds.total += done.seconds;
     report.after_care = Some(done);
     Ok(Rendered { mesh, report })
 }
 
-/// `largest`, or a volume in mm3.
+/// `largest`, a volume in mm3, or places in mm.
 ///
 /// # Errors
 /// One line that says what to write instead.
 pub(crate) fn islands(text: &str) -> Result<Islands, String> {
+    if text.contains([',', ';']) {
+        let places: Result<Vec<[f64; 3]>, String> = text.split(';').map(place).collect();
+        return places.map(Islands::At);
+    }
     match text {
         "largest" => Ok(Islands::Largest),
-        _ => volume(text, "largest").map(Islands::AtLeastMm3),
+        _ => volume(text, "largest` or a place `X,Y,Z").map(Islands::AtLeastMm3),
     }
+}
+
+/// Three coordinates in mm.
+fn place(text: &str) -> Result<[f64; 3], String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse()).collect();
+    let place = numbers.ok().and_then(|numbers| numbers.try_into().ok());
+    place
+        .filter(|place: &[f64; 3]| place.iter().all(|mm| mm.is_finite()))
+        .ok_or_else(|| format!("`{text}` is no place; write X,Y,Z in mm, for example 0,-90,40"))
 }
 
 /// `all`, or a volume in mm3.

@@ -1,5 +1,7 @@
 //! Whether a mesh can be printed, judged on the file that it would be.
 
+use std::num::NonZeroUsize;
+
 use bonemesh_mesh::{
     Intersection, Intersections, Topology, TriangleMesh, TriangleTree, WallThickness,
     check_topology, find_intersections,
@@ -70,14 +72,43 @@ impl From<Intersection> for Place {
     }
 }
 
-/// Judges `mesh` as a body to be printed.
+/// What [`check_walls`] gives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checked {
+    /// The verdict.
+    pub report: PrintCheck,
+    /// The mesh as its file would be read.
+    pub mesh: TriangleMesh,
+    /// Thickness (mm) of the wall at each of its vertices, infinite where nothing lies opposite;
+    /// empty if the mesh bounds no volume.
+    pub walls_mm: Vec<f64>,
+}
+
+/// Judges `mesh` as a body to be printed. `threads`: `None` is one per core; the result does not
+/// depend on it.
 ///
 /// Walls are measured only in a mesh that is closed and outward, since others have no inside.
 ///
 /// # Errors
 /// [`Error::Mesh`] for coordinates that no file can hold, or [`Error::is_cancelled`].
-pub fn check(mesh: &TriangleMesh, task: &Task) -> Result<PrintCheck, Error> {
-    pool(None)?.install(|| {
+pub fn check(
+    mesh: &TriangleMesh,
+    threads: Option<NonZeroUsize>,
+    task: &Task,
+) -> Result<PrintCheck, Error> {
+    Ok(check_walls(mesh, threads, task)?.report)
+}
+
+/// The same with the thickness of the wall everywhere.
+///
+/// # Errors
+/// Those of [`check`].
+pub fn check_walls(
+    mesh: &TriangleMesh,
+    threads: Option<NonZeroUsize>,
+    task: &Task,
+) -> Result<Checked, Error> {
+    pool(threads)?.install(|| {
         let mesh = mesh.as_written(task)?;
         let topology = check_topology(&mesh, task)?;
         let tree = TriangleTree::new(&mesh, task)?;
@@ -91,7 +122,7 @@ pub fn check(mesh: &TriangleMesh, task: &Task) -> Result<PrintCheck, Error> {
             .thinnest_vertex
             .map(|v| mesh.vertices_mm()[v as usize]);
         let reasons = reasons(&topology, &found);
-        Ok(PrintCheck {
+        let report = PrintCheck {
             inconsistent_edges: topology.inconsistent_edges,
             outward: topology.volume_mm3 > 0.0,
             self_intersections: found.count,
@@ -99,10 +130,15 @@ pub fn check(mesh: &TriangleMesh, task: &Task) -> Result<PrintCheck, Error> {
             intersections: found.pairs.into_iter().map(Place::from).collect(),
             thinnest_wall_mm: walls.thinnest_mm(),
             thinnest_wall_place_mm: thinnest,
-            wall_5_percent_mm: low_part(walls.at_vertex_mm),
+            wall_5_percent_mm: low_part(walls.at_vertex_mm.clone()),
             printable: reasons.is_empty(),
             reasons,
             topology: topology.into(),
+        };
+        Ok(Checked {
+            report,
+            walls_mm: walls.at_vertex_mm,
+            mesh,
         })
     })
 }
@@ -206,7 +242,7 @@ mod tests {
 
     fn checked(vertices: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> PrintCheck {
         let mesh = TriangleMesh::new(vertices, triangles).unwrap();
-        check(&mesh, &Task::default()).unwrap()
+        check(&mesh, None, &Task::default()).unwrap()
     }
 
     fn only_reason(check: &PrintCheck) -> &str {

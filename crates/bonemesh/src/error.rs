@@ -73,12 +73,14 @@ pub enum Error {
         sampler: &'static str,
     },
     /// A choice that the method has no use for.
-    #[error("{choice} means nothing to the method `{method}`; leave it out, or choose `alpha`")]
+    #[error("{choice} means nothing to the method `{method}`; leave it out, or choose {instead}")]
     NotForMethod {
         /// What was chosen.
         choice: &'static str,
         /// Name of the method.
         method: &'static str,
+        /// The methods that have it.
+        instead: String,
     },
     /// No island is as large as asked for.
     #[error("no island is that large, the largest has {largest_mm3:.3} mm3; ask for less")]
@@ -96,6 +98,14 @@ pub enum Error {
         "a cloud has no voxels whose volume alpha could be matched to; give alpha in mm, or render the images"
     )]
     NoVoxels,
+    /// Walls of what has no inside.
+    #[error(
+        "the surface encloses no volume, so its walls cannot be measured and {path} was not written; leave --walls out to see why"
+    )]
+    NoWalls {
+        /// The file that was to be written.
+        path: PathBuf,
+    },
     /// A picture that cannot be written.
     #[error("cannot write {path}: {source}; choose another place or name, such as histogram.png")]
     Picture {
@@ -113,6 +123,11 @@ pub enum Error {
 }
 
 impl Error {
+    /// Whether choices cannot go together, whatever the data.
+    pub fn is_of_choices(&self) -> bool {
+        matches!(self, Self::NotForMethod { .. } | Self::NoVoxels)
+    }
+
     /// Whether the work was stopped on request, in whichever step.
     pub fn is_cancelled(&self) -> bool {
         matches!(

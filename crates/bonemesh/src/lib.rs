@@ -11,7 +11,7 @@
 //! threads; every failure is one [`Error`] whose message names the file or value and the remedy;
 //! nothing is left half-written.
 //!
-//! The threshold is a setting; [`Settings::auto_threshold`] finds it in the volume, and
+//! The threshold is a setting; [`Settings::find_threshold`] finds it in the volume, and
 //! [`histogram`] tells what there is to choose from.
 //!
 //! Limits: the surface of method `alpha` is the boundary of a regularised alpha complex. It has
@@ -33,6 +33,7 @@
 
 mod after_care;
 mod check;
+mod choices;
 pub mod cli;
 mod error;
 mod left_out;
@@ -50,7 +51,7 @@ mod table;
 mod thresholds;
 
 pub use after_care::{AfterCare, AfterCareReport, Cavities, Holes, LeftHole, MOST_NAMED, care_for};
-pub use check::{Place, PrintCheck, check, wall_thickness};
+pub use check::{Checked, Place, PrintCheck, check, check_walls, wall_thickness};
 pub use error::Error;
 pub use metal::MetalReport;
 pub use panics::hush_foreign_panics;
@@ -87,9 +88,9 @@ pub use bonemesh_phantom::{
 pub use bonemesh_roi::{Method as RoiMethod, RoiError, ThicknessMm};
 pub use bonemesh_segment::{
     CannySettings, Components, Connectivity, EdgeThreshold, HuThreshold, LocalThreshold, Mask,
-    SegmentError, Suggestion, Suggestions, ThresholdPreset, canny, connected_components,
-    detect_edges, edge_threshold, grow_region, hysteresis_threshold, largest_component,
-    local_threshold, multi_otsu, otsu, suggest_thresholds, threshold,
+    SegmentError, Suggestion, Suggestions, ThresholdChoice, ThresholdFinder, ThresholdPreset,
+    canny, connected_components, detect_edges, edge_threshold, grow_region, hysteresis_threshold,
+    largest_component, local_threshold, multi_otsu, otsu, suggest_thresholds, threshold,
 };
 pub use bonemesh_surface::{
     BallPivoted, BallPivotingSettings, PoissonSettings, SurfaceError, VolumeMatched, alpha_surface,

@@ -57,7 +57,7 @@ impl MetalReport {
     }
 
     /// In words, in one line.
-    pub(crate) fn note(&self) -> String {
+    fn note(&self) -> String {
         let volume_cm3 = self.volume_mm3 / MM3_PER_CM3;
         let [first, last] = self.slices;
         let [low, high] = self.z_mm;
@@ -84,6 +84,17 @@ impl MetalReport {
             "; the surface in these slices, most of all beside the metal, is less true than elsewhere (--damp-metal damps streaks)"
         };
         format!("{place}{streaks}{damped}{remedy}")
+    }
+}
+
+/// What is to be said of metal, if anything is.
+pub(crate) fn note(metal: Option<MetalReport>, settings: &Settings) -> Option<String> {
+    match metal {
+        Some(metal) => Some(metal.note()),
+        None if settings.damp_metal => {
+            Some("no metal was found, so there were no streaks to damp".to_owned())
+        }
+        None => None,
     }
 }
 

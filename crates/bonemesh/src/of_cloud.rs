@@ -9,6 +9,7 @@ use bonemesh_surface::{
 };
 use bonemesh_task::Task;
 
+use crate::choices::no_cloud;
 use crate::render::{Rendered, lap};
 use crate::report::{RenderReport, Seconds, check};
 use crate::{AlphaRule, Error, Method, Settings};
@@ -29,12 +30,6 @@ pub(crate) fn cloud_to_mesh(
 ) -> Result<Rendered, Error> {
     if settings.method == Method::Alpha {
         return alpha(cloud, bone_mm3, settings, seconds, task);
-    }
-    if settings.alpha_mm.is_some() || settings.alpha_rule != AlphaRule::MeanDistance {
-        return Err(Error::NotForMethod {
-            choice: "alpha",
-            method: settings.method.name(),
-        });
     }
     let mut clock = Instant::now();
     let (mut tetrahedra, mut radii_mm) = (None, None);
@@ -63,10 +58,7 @@ pub(crate) fn cloud_to_mesh(
         }
         Method::Planar => planar_surface(cloud, task)?,
         Method::Alpha | Method::Isosurface | Method::Labelled => {
-            return Err(Error::NotForMethod {
-                choice: "a cloud",
-                method: settings.method.name(),
-            });
+            return Err(no_cloud(settings.method));
         }
     };
     let topology = check(&mesh, task)?;

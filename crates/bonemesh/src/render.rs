@@ -12,13 +12,14 @@ use bonemesh_task::{Task, pool};
 use bonemesh_volume::{Volume, Voxels};
 
 use crate::after_care::cared_for;
+use crate::choices::{no_cloud, refuse_unused};
 use crate::left_out::leave_out;
-use crate::metal::without_streaks;
+use crate::metal::{note, without_streaks};
 use crate::of_cloud::cloud_to_mesh;
 use crate::report::{RenderReport, Seconds, check};
 use crate::source::{Reading, Source};
-use crate::thresholds::chosen;
-use crate::{AlphaRule, Error, Method, Sampling, Settings};
+use crate::thresholds::{chosen, leveled};
+use crate::{Error, Method, Sampling, Settings};
 
 /// Fewer points enclose no space.
 const MIN_POINTS: usize = 4;
@@ -37,6 +38,7 @@ pub struct Rendered {
 /// # Errors
 /// Any [`Error`]; nothing is written.
 pub fn render(path: &Path, settings: &Settings, task: &Task) -> Result<Rendered, Error> {
+    refuse_unused(settings)?;
     pool(settings.threads)?.install(|| {
         let clock = Instant::now();
         let source = Source::open(path, settings.one_series, task)?;
@@ -57,6 +59,7 @@ pub fn render(path: &Path, settings: &Settings, task: &Task) -> Result<Rendered,
 /// # Errors
 /// Any [`Error`] but those of reading.
 pub fn render_volume(volume: &Volume, settings: &Settings, task: &Task) -> Result<Rendered, Error> {
+    refuse_unused(settings)?;
     pool(settings.threads)?.install(|| volume_to_mesh(volume, settings, task))
 }
 
@@ -81,6 +84,7 @@ pub fn point_cloud(
         };
         let volume = &*damped;
         let settings = &chosen(volume, settings, task)?.of(settings);
+        let volume = &*leveled(volume, settings, task)?;
         let found = volume_to_cloud(volume, settings, frame, &mut Seconds::default(), task)?;
         Ok(found.0)
     })
@@ -92,11 +96,9 @@ pub fn point_cloud(
 /// [`Error::Cloud`], [`Error::Surface`], [`Error::NotForMethod`] where voxels are needed.
 pub fn mesh_cloud(cloud: &PointCloud, settings: &Settings, task: &Task) -> Result<Rendered, Error> {
     if settings.method.needs_voxels() {
-        return Err(Error::NotForMethod {
-            choice: "a cloud",
-            method: settings.method.name(),
-        });
+        return Err(no_cloud(settings.method));
     }
+    refuse_unused(settings)?;
     pool(settings.threads)?.install(|| {
         let rendered = cloud_to_mesh(cloud, None, settings, Seconds::default(), task)?;
         cared_for(rendered, &settings.after_care, task)
@@ -106,11 +108,12 @@ pub fn mesh_cloud(cloud: &PointCloud, settings: &Settings, task: &Task) -> Resul
 fn volume_to_mesh(volume: &Volume, settings: &Settings, task: &Task) -> Result<Rendered, Error> {
     let mut seconds = Seconds::default();
     let mut clock = Instant::now();
-    refuse_choices(settings)?;
     let (volume, metal) = without_streaks(volume, settings, task)?;
     let volume = &*volume;
     let chosen = chosen(volume, settings, task)?;
     let settings = &chosen.of(settings);
+    let leveled = leveled(volume, settings, task)?;
+    let volume = &*leveled;
     let threshold_s = lap(&mut clock);
     let mut rendered = if settings.method.needs_voxels() {
         seconds.edges += threshold_s;
@@ -125,30 +128,9 @@ fn volume_to_mesh(volume: &Volume, settings: &Settings, task: &Task) -> Result<R
     rendered.report.spacing_mm = Some(volume.geometry().spacing_mm());
     rendered.report.threshold_hu = Some(settings.threshold.hu());
     rendered.report.threshold_reason = chosen.reason;
-    rendered
-        .report
-        .warnings
-        .extend(metal.map(|metal| metal.note()));
+    rendered.report.warnings.extend(note(metal, settings));
     rendered.report.metal = metal;
     Ok(rendered)
-}
-
-/// Refuses choices that only edge points have, before any work is done.
-fn refuse_choices(settings: &Settings) -> Result<(), Error> {
-    if !settings.method.needs_voxels() {
-        return Ok(());
-    }
-    let refuse = |choice| Error::NotForMethod {
-        choice,
-        method: settings.method.name(),
-    };
-    if settings.sampling.is_some() {
-        return Err(refuse("a sample of the points"));
-    }
-    if settings.alpha_mm.is_some() || settings.alpha_rule != AlphaRule::MeanDistance {
-        return Err(refuse("alpha"));
-    }
-    Ok(())
 }
 
 fn volume_to_closed_surface(

@@ -99,6 +99,8 @@ pub struct RenderReport {
     pub manifold: bool,
     /// Parts of the mesh that do not touch.
     pub components: usize,
+    /// Those of them that face inward: the walls of cavities. 0 unless watertight.
+    pub cavities: usize,
     /// Volume of air that labelled tetrahedra filled where the bone only touched itself.
     pub filled_mm3: Option<f64>,
     /// Volume inside the mesh; with alpha it goes through the centres of the edge pixels.
@@ -140,6 +142,7 @@ impl RenderReport {
             watertight: check.watertight,
             manifold: check.manifold,
             components: check.components,
+            cavities: check.cavities,
             filled_mm3: None,
             volume_mm3: check.volume_mm3,
             left_out_table: None,
@@ -243,6 +246,8 @@ pub struct CheckReport {
     pub degenerate_triangles: usize,
     /// Parts that do not touch.
     pub components: usize,
+    /// Those of them that face inward: the walls of cavities. 0 unless watertight.
+    pub cavities: usize,
     /// Volume inside, positive when the winding is outward.
     pub volume_mm3: f64,
     /// Area.
@@ -264,6 +269,7 @@ impl From<Topology> for CheckReport {
             non_manifold_vertices: t.non_manifold_vertices,
             degenerate_triangles: t.degenerate_triangles,
             components: t.components,
+            cavities: t.cavities,
             volume_mm3: t.volume_mm3,
             area_mm2: t.area_mm2,
             bounds_mm: t.bounds_mm,

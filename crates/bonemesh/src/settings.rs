@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use bonemesh_cloud::{Percent, Sampler};
 use bonemesh_dicom::SeriesChoice;
-use bonemesh_segment::{CannySettings, HuThreshold};
+use bonemesh_segment::{CannySettings, HuThreshold, ThresholdChoice, ThresholdFinder};
 use bonemesh_surface::PoissonSettings;
 use bonemesh_volume::CropBox;
 
@@ -118,9 +118,12 @@ pub struct Sampling {
 pub struct Settings {
     /// Bone is strictly above this.
     pub threshold: HuThreshold,
-    /// Finds the threshold in the volume ([`choose_threshold`](crate::choose_threshold)) instead
-    /// of taking `threshold`.
-    pub auto_threshold: bool,
+    /// How the threshold is found in the volume ([`choose_threshold`](crate::choose_threshold));
+    /// `None` takes `threshold`.
+    pub find_threshold: Option<ThresholdFinder>,
+    /// Lets the threshold follow the mean around each voxel by up to so many HU
+    /// ([`LocalThreshold`](bonemesh_segment::LocalThreshold)); `None` holds it everywhere.
+    pub local_leeway_hu: Option<f64>,
     /// Canny's sigma and thresholds.
     pub canny: CannySettings,
     /// How the surface is made.
@@ -161,11 +164,30 @@ pub struct Settings {
 /// The threshold that the published method used for skulls (Tilotta 2009), in HU.
 const SKULL_HU: f64 = 350.0;
 
+impl Settings {
+    /// These settings with a threshold as it was chosen.
+    #[must_use]
+    pub fn with_threshold(self, choice: ThresholdChoice) -> Self {
+        match choice {
+            ThresholdChoice::Given(threshold) => Self {
+                threshold,
+                find_threshold: None,
+                ..self
+            },
+            ThresholdChoice::Found(finder) => Self {
+                find_threshold: Some(finder),
+                ..self
+            },
+        }
+    }
+}
+
 impl Default for Settings {
     fn default() -> Self {
         Self {
             threshold: HuThreshold::new(SKULL_HU).expect("350 is finite: anything else is a bug"),
-            auto_threshold: false,
+            find_threshold: None,
+            local_leeway_hu: None,
             canny: CannySettings::default(),
             method: Method::default(),
             alpha_mm: None,

@@ -1,10 +1,14 @@
 //! The histogram of a volume with suggested thresholds, and the threshold of a rendering.
 
+use std::borrow::Cow;
 use std::num::{NonZeroU16, NonZeroUsize};
 use std::path::Path;
 
 use bonemesh_dicom::SeriesChoice;
-use bonemesh_segment::{HuThreshold, Suggestion, ThresholdPreset, suggest_thresholds};
+use bonemesh_segment::{
+    HuThreshold, LocalThreshold, Suggestion, ThresholdFinder, ThresholdPreset, level_to_threshold,
+    suggest_thresholds,
+};
 use bonemesh_task::{Task, pool};
 use bonemesh_volume::{CropBox, Histogram, Volume};
 use serde::Serialize;
@@ -174,6 +178,20 @@ fn above(histogram: &Histogram, threshold: HuThreshold) -> u64 {
     counts.iter().skip(first).sum()
 }
 
+/// The `volume` moved so that the global threshold of `settings` does what the local one would, if they
+/// ask for it.
+pub(crate) fn leveled<'a>(
+    volume: &'a Volume,
+    settings: &Settings,
+    task: &Task,
+) -> Result<Cow<'a, Volume>, Error> {
+    let Some(leeway_hu) = settings.local_leeway_hu else {
+        return Ok(Cow::Borrowed(volume));
+    };
+    let local = LocalThreshold::around(settings.threshold).with_leeway_hu(leeway_hu)?;
+    Ok(Cow::Owned(level_to_threshold(volume, local, task)?))
+}
+
 /// The threshold that a rendering of a volume takes, and why.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChosenThreshold {
@@ -188,7 +206,7 @@ impl ChosenThreshold {
     pub fn of(&self, settings: &Settings) -> Settings {
         Settings {
             threshold: self.threshold,
-            auto_threshold: false,
+            find_threshold: None,
             ..settings.clone()
         }
     }
@@ -213,13 +231,13 @@ pub(crate) fn chosen(
     settings: &Settings,
     task: &Task,
 ) -> Result<ChosenThreshold, Error> {
-    if !settings.auto_threshold {
+    let Some(finder) = settings.find_threshold else {
         let preset = ThresholdPreset::of(settings.threshold);
         return Ok(ChosenThreshold {
             threshold: settings.threshold,
             reason: preset.map(|p| format!("{p}: {} ({})", p.description(), p.source())),
         });
-    }
+    };
     let cropped = settings.crop.as_ref().map(|crop| volume.cropped(crop));
     let cropped = cropped.transpose()?;
     let volume = cropped.as_ref().unwrap_or(volume);
@@ -231,9 +249,12 @@ pub(crate) fn chosen(
         threshold,
         reason,
         source,
-    } = suggestions.recommended()?;
+    } = suggestions.by(finder)?;
     Ok(ChosenThreshold {
         threshold: *threshold,
-        reason: Some(format!("auto, {name}: {reason} ({source})")),
+        reason: Some(match finder {
+            ThresholdFinder::Auto => format!("{finder}, {name}: {reason} ({source})"),
+            _ => format!("{name}: {reason} ({source})"),
+        }),
     })
 }

@@ -53,7 +53,7 @@ fn ball([columns, rows, slices]: [usize; 3]) -> impl Fn([usize; 3]) -> f32 {
 fn assert_printable(name: &str, volume: &Volume) {
     for method in METHODS {
         let mesh = rendered(volume, method).unwrap().mesh;
-        let report = bonemesh::check(&mesh, &Task::default()).unwrap();
+        let report = bonemesh::check(&mesh, None, &Task::default()).unwrap();
         assert!(report.printable, "{name}, {}: {report:?}", method.name());
         assert!(report.topology.volume_mm3 > 0.0, "{name}");
     }

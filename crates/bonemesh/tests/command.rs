@@ -80,6 +80,61 @@ fn without_a_method_the_surface_is_ready_to_print() {
 }
 
 #[test]
+fn walls_are_written_for_every_vertex_of_a_closed_mesh() {
+    let folder = TempDir::new().unwrap();
+    let (stl, ply) = (folder.path().join("tube.stl"), folder.path().join("w.ply"));
+    let series = folder.path().join("tube");
+    bonemesh(&["phantom", "tube", text(&series), "--coarser", "1.5"]);
+    bonemesh(&["render", text(&series), "-o", text(&stl)]);
+    let report = json(&bonemesh(&[
+        "check",
+        text(&stl),
+        "--walls",
+        text(&ply),
+        "--json",
+        "--threads",
+        "2",
+    ]));
+    let bytes = fs::read(&ply).unwrap();
+    let end = b"end_header\n";
+    let head = bytes.windows(end.len()).position(|w| w == end).unwrap() + end.len();
+    let header = std::str::from_utf8(&bytes[..head]).unwrap();
+    assert!(header.contains("property float wall_mm"), "{header}");
+    let vertices = report["vertices"].as_u64().unwrap() as usize;
+    let walls = bytes[head..].chunks(16).take(vertices);
+    let walls = walls.map(|v| f64::from(f32::from_le_bytes([v[12], v[13], v[14], v[15]])));
+    let thinnest = walls.clone().fold(f64::INFINITY, f64::min);
+    assert!((thinnest - report["thinnest_wall_mm"].as_f64().unwrap()).abs() < 1e-4);
+    let mut walls: Vec<f64> = walls.collect();
+    walls.sort_by(f64::total_cmp);
+    // Between radii of 9 and 15 mm, at most of the surface.
+    assert!(
+        (walls[vertices / 2] - 6.0).abs() < 0.5,
+        "{}",
+        walls[vertices / 2]
+    );
+    let again = json(&bonemesh(&["check", text(&ply), "--json"]));
+    assert_eq!(again["printable"], true);
+}
+
+#[test]
+fn walls_of_an_open_mesh_or_for_another_format_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let open = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    fs::write(at("open.obj"), open).unwrap();
+    for (walls, word) in [("w.ply", "encloses no volume"), ("w.stl", ".ply")] {
+        let walls = at(walls);
+        let output = bonemesh(&["check", text(&at("open.obj")), "--walls", text(&walls)]);
+        assert_refused(&output, word);
+        assert!(!walls.exists());
+    }
+    fs::write(at("bad.obj"), open.replace("1 2 3", "1 2 4")).unwrap();
+    let bad = bonemesh(&["check", text(&at("bad.obj"))]);
+    assert_refused(&bad, "names vertex 4, but there are 3");
+}
+
+#[test]
 fn the_threshold_goes_by_three_names() {
     let folder = TempDir::new().unwrap();
     let stl = folder.path().join("bone.stl");

@@ -55,6 +55,36 @@ fn unusable_arguments_end_with_2() {
 }
 
 #[test]
+fn choices_that_the_method_has_not_end_with_2_before_anything_is_read() {
+    for (choices, known) in [
+        (&["--method", "isosurface", "--alpha", "2"][..], "`alpha`"),
+        (&["--method", "labelled", "--sample", "10"], "`tetrahedra`"),
+        (&["--sigma", "2"], "`planar`"),
+        (&["--radii", "1,2"], "`ball-pivoting`"),
+        (&["--depth", "5"], "`poisson`"),
+        (&["--method", "alpha", "--scale", "2"], "`poisson`"),
+        (&["--method", "alpha", "--at-threshold"], "`labelled`"),
+        (&["--method", "poisson", "--keep-table"], "`isosurface`"),
+    ] {
+        let render = ["render", "missing", "-o", "y.stl"];
+        let output = bonemesh(&[&render[..], choices].concat());
+        let said = message(&output);
+        assert_eq!(output.status.code(), Some(2), "{choices:?}: {said}");
+        assert!(said.contains(known), "{choices:?}: {said}");
+    }
+    let folder = TempDir::new().unwrap();
+    let cloud = folder.path().join("cloud.xyz");
+    fs::write(&cloud, "0 0 0\n1 0 0\n0 1 0\n0 0 1\n").unwrap();
+    for choices in [["--alpha", "auto"], ["--method", "isosurface"]] {
+        let mesh = ["mesh", text(&cloud), "-o", "y.stl"];
+        let output = bonemesh(&[&mesh[..], &choices].concat());
+        assert_eq!(output.status.code(), Some(2), "{}", message(&output));
+    }
+    let voxels = bonemesh(&["mesh", text(&cloud), "-o", "y.stl", "--keep-table"]);
+    assert_eq!(voxels.status.code(), Some(2));
+}
+
+#[test]
 fn folders_without_a_series_are_refused_in_one_line() {
     let folder = TempDir::new().unwrap();
     let out = folder.path().join("bone.stl");

@@ -24,7 +24,7 @@ fn rendered(name: &str, settings: &Settings) -> Option<Rendered> {
     let folder = folder(name)?;
     let task = Task::default();
     let rendered = render(&folder, settings, &task).unwrap_or_else(|e| panic!("{name}: {e}"));
-    let report = bonemesh::check(&rendered.mesh, &task).unwrap();
+    let report = bonemesh::check(&rendered.mesh, None, &task).unwrap();
     assert!(report.printable, "{name}: {report:?}");
     Some(rendered)
 }

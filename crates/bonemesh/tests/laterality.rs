@@ -189,7 +189,7 @@ fn triangles_face_outward_in_grids_of_either_hand() {
         let mesh = rendered(&volume).mesh;
         write_mesh(&stl, &mesh, &Task::default()).unwrap();
         let mesh = read_mesh(&stl, &Task::default()).unwrap();
-        let report = bonemesh::check(&mesh, &Task::default()).unwrap();
+        let report = bonemesh::check(&mesh, None, &Task::default()).unwrap();
         assert!(
             report.topology.volume_mm3 > 20_000.0,
             "{name}: {}",

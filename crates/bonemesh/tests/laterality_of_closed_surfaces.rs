@@ -120,7 +120,7 @@ fn left_front_and_head_stay_where_they_are() {
 #[test]
 fn every_orientation_can_be_printed() {
     for (name, mesh) in all(["axial", "oblique", "tilted", "decubitus-right"]) {
-        let report = bonemesh::check(mesh, &Task::default()).unwrap();
+        let report = bonemesh::check(mesh, None, &Task::default()).unwrap();
         assert!(report.printable, "{name}: {report:?}");
     }
 }

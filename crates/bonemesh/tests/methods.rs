@@ -14,7 +14,10 @@ fn shell() -> Volume {
 fn rendered(method: Method) -> Rendered {
     let settings = Settings {
         method,
-        depth: 6,
+        depth: match method {
+            Method::Poisson => 6,
+            _ => Settings::default().depth,
+        },
         ..Settings::default()
     };
     render_volume(&shell(), &settings, &Task::default()).unwrap()

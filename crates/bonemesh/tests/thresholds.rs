@@ -134,6 +134,49 @@ fn auto_is_the_recommended_threshold_of_the_part_that_is_used() {
 }
 
 #[test]
+fn every_suggestion_can_be_taken_by_its_name() {
+    let folder = TempDir::new().unwrap();
+    let (tube, stl) = (tube(), folder.path().join("bone.stl"));
+    let found = json(&bonemesh(&["histogram", text(&tube), "--json"]));
+    let suggestions = found["suggestions"].as_array().unwrap();
+    assert!(suggestions.len() > 4);
+    for suggestion in suggestions {
+        let name = suggestion["name"].as_str().unwrap();
+        let render = ["render", text(&tube), "-o", text(&stl), "--json", "--hu"];
+        let rendered = bonemesh(&[&render[..], &[name]].concat());
+        if name == "teeth" {
+            // Nothing is that dense in this phantom.
+            assert_eq!(rendered.status.code(), Some(1));
+            continue;
+        }
+        let report = json(&rendered);
+        assert_eq!(report["threshold_hu"], suggestion["threshold_hu"], "{name}");
+        let reason = report["threshold_reason"].as_str().unwrap();
+        assert!(reason.starts_with(&format!("{name}: ")), "{reason}");
+    }
+}
+
+#[test]
+fn a_local_threshold_keeps_what_the_global_one_loses() {
+    let folder = TempDir::new().unwrap();
+    let tube = tube();
+    let volume_mm3 = |extra: &[&str]| {
+        let stl = folder.path().join("bone.stl");
+        let render = ["render", text(&tube), "-o", text(&stl), "--json"];
+        let points = ["--method", "alpha", "--hu", "900"];
+        let report = json(&bonemesh(&[&render[..], &points, extra].concat()));
+        report["volume_mm3"].as_f64().unwrap()
+    };
+    let (global, none) = (volume_mm3(&[]), volume_mm3(&["--local", "0"]));
+    assert!((global - none).abs() < 1e-9);
+    assert!(volume_mm3(&["--local", "400"]) > 1.05 * global);
+    let render = ["render", text(&tube), "-o", "x.stl", "--local", "-3"];
+    let refused = bonemesh(&render);
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("leeway of -3 HU"));
+}
+
+#[test]
 fn a_name_from_the_literature_stands_for_its_number() {
     let folder = TempDir::new().unwrap();
     let render = |hu: &str, file: &str| {

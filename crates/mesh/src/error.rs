@@ -38,6 +38,20 @@ pub enum MeshError {
         /// The file.
         path: PathBuf,
     },
+    /// Only PLY files hold numbers of vertices.
+    #[error("{} does not end in .ply, and no other mesh file holds a number for each vertex; give it this extension", path.display())]
+    NotPly {
+        /// The file.
+        path: PathBuf,
+    },
+    /// Not a number for each vertex.
+    #[error("{values} values are not one for each of {vertices} vertices; give one for each")]
+    Values {
+        /// How many values.
+        values: usize,
+        /// How many vertices.
+        vertices: usize,
+    },
     /// There is no such file to read.
     #[error("there is no file {}; check the path", path.display())]
     NotFound {
@@ -134,6 +148,17 @@ pub enum MeshError {
         /// What the operating system said.
         reason: String,
     },
+    /// A place that is nowhere near the mesh.
+    #[error(
+        "the place {} is not near the mesh, which reaches from {} to {} mm; give one on the bone, in the mesh's frame",
+        place(place_mm), place(&bounds_mm[0]), place(&bounds_mm[1])
+    )]
+    FarPlace {
+        /// The place.
+        place_mm: [f64; 3],
+        /// Lowest and highest coordinates of the mesh.
+        bounds_mm: [[f64; 3]; 2],
+    },
     /// A length that is negative, infinite or no number.
     #[error("the {name} is {value}; give a length in mm from 0")]
     Length {
@@ -157,6 +182,11 @@ pub enum MeshError {
     /// Stopped on request.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+/// Coordinates as a user writes them.
+fn place([x, y, z]: &[f64; 3]) -> String {
+    format!("{x:.1},{y:.1},{z:.1}")
 }
 
 impl MeshError {

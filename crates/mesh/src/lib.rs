@@ -68,7 +68,9 @@ pub use decimate::{Decimated, Decimation, decimate};
 pub use error::MeshError;
 pub use holes::{HoleLeft, HoleLimits, HoleReason, HolesFilled, fill_holes};
 pub use intersections::{Intersection, Intersections, find_intersections};
-pub use io::{MeshFormat, check_target, read_mesh, write_mesh};
+pub use io::{
+    MeshFormat, check_target, check_values_target, read_mesh, write_mesh, write_with_values,
+};
 pub use mesh::TriangleMesh;
 pub use parts::{Island, Islands, Kept, RemovedPart, fill_cavities, keep_islands, take_islands};
 pub use smooth::{Smoothed, smooth};

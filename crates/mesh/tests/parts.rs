@@ -20,7 +20,7 @@ fn islands_go_by_their_volume_and_take_their_cavities_along() {
     );
     let floating = box_mesh([4.0; 3], [6.0; 3]);
     let all = together(&together(&small, &big), &floating);
-    let kept = |keep| keep_islands(&all, keep, &Task::default()).unwrap();
+    let kept = |keep| keep_islands(&all, &keep, &Task::default()).unwrap();
     let volume = |mesh: &TriangleMesh| topology(mesh).volume_mm3.round();
 
     let largest = kept(Islands::Largest);
@@ -37,6 +37,32 @@ fn islands_go_by_their_volume_and_take_their_cavities_along() {
     assert_eq!(kept(Islands::AtLeastMm3(8.5)).removed.len(), 1);
     assert_eq!(kept(Islands::AtLeastMm3(7.5)).mesh, all);
     assert!(kept(Islands::AtLeastMm3(1e6)).mesh.triangles().is_empty());
+}
+
+#[test]
+fn islands_are_kept_by_places_in_them_on_them_or_beside_them() {
+    let shell = together(&box_mesh([0.0; 3], [10.0; 3]), &hollow([1.0; 3], [9.0; 3]));
+    let floating = box_mesh([4.0; 3], [6.0; 3]);
+    let other = box_mesh([20.0; 3], [25.0; 3]);
+    let all = together(&together(&shell, &floating), &other);
+    let volume_at = |places: &[[f64; 3]]| {
+        let kept = keep_islands(&all, &Islands::At(places.to_vec()), &Task::default()).unwrap();
+        topology(&kept.mesh).volume_mm3.round()
+    };
+    assert_eq!(volume_at(&[[0.5, 5.0, 5.0]]), 1000.0 - 512.0);
+    // Nearest is the wall of its cavity.
+    assert_eq!(volume_at(&[[1.5, 5.0, 5.0]]), 1000.0 - 512.0);
+    assert_eq!(volume_at(&[[5.0; 3]]), 8.0);
+    assert_eq!(volume_at(&[[26.0; 3]]), 125.0);
+    assert_eq!(volume_at(&[[26.0; 3], [5.0; 3], [24.0; 3]]), 133.0);
+    let far = keep_islands(
+        &all,
+        &Islands::At(vec![[5.0; 3], [5.0, 80.0, 5.0]]),
+        &Task::default(),
+    );
+    let message = far.unwrap_err().to_string();
+    assert!(message.contains("5.0,80.0,5.0"), "{message}");
+    assert!(message.contains("25.0,25.0,25.0"), "{message}");
 }
 
 #[test]
@@ -68,7 +94,7 @@ fn filled_cavities_take_along_what_floats_in_them() {
 fn a_body_in_a_bend_of_another_is_not_in_it() {
     let bar = box_mesh([-3.0; 3], [3.0; 3]);
     let both = together(&torus(60, 40), &bar);
-    let kept = keep_islands(&both, Islands::AtLeastMm3(1000.0), &Task::default()).unwrap();
+    let kept = keep_islands(&both, &Islands::AtLeastMm3(1000.0), &Task::default()).unwrap();
     assert_eq!(kept.mesh.triangles().len(), 60 * 40 * 2);
     let turned = together(&torus(60, 40), &hollow([-3.0; 3], [3.0; 3]));
     assert!(
@@ -84,13 +110,13 @@ fn tiny_and_empty_meshes_pass_and_bad_numbers_are_refused() {
     let task = Task::default();
     let point = mesh(vec![[1.0; 3]; 3], vec![[0, 1, 2], [0, 0, 1]]);
     for given in [TriangleMesh::default(), mesh(vec![[1.0; 3]], vec![]), point] {
-        assert!(keep_islands(&given, Islands::Largest, &task).is_ok());
+        assert!(keep_islands(&given, &Islands::Largest, &task).is_ok());
         assert!(fill_cavities(&given, None, &task).is_ok());
     }
     for bad in [-1.0, f64::NAN, f64::INFINITY] {
         let given = box_mesh([0.0; 3], [1.0; 3]);
         let refused = [
-            keep_islands(&given, Islands::AtLeastMm3(bad), &task).unwrap_err(),
+            keep_islands(&given, &Islands::AtLeastMm3(bad), &task).unwrap_err(),
             fill_cavities(&given, Some(bad), &task).unwrap_err(),
         ];
         let is_volume = |e: &MeshError| matches!(e, MeshError::Volume { .. });
@@ -103,7 +129,7 @@ fn a_cancelled_task_stops_both() {
     let task = Task::default();
     task.cancel().cancel();
     let given = torus(20, 10);
-    let kept = keep_islands(&given, Islands::Largest, &task);
+    let kept = keep_islands(&given, &Islands::Largest, &task);
     assert!(matches!(kept, Err(MeshError::Cancelled(_))));
     let filled = fill_cavities(&given, None, &task);
     assert!(matches!(filled, Err(MeshError::Cancelled(_))));

@@ -74,7 +74,7 @@ fn a_broken_obj_is_refused_with_its_line() {
         ("f 1 2 3", "f 1 2 x", "line 4"),
         ("f 1 2 3", "f 1 2 99999999999999999999", "line 4"),
         ("f 1 2 3", "f 1 2 5000000000", "line 4"),
-        ("f 1 2 3", "f 1 2 4", "vertex 3"),
+        ("f 1 2 3", "f 1 2 4", "vertex 4, but there are 3"),
         ("v 1 0 0", "v 1 0 0\0", "line 2"),
     ] {
         let text = refusal("a.obj", good.replace(from, to).as_bytes());

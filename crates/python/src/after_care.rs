@@ -9,8 +9,8 @@ use crate::detach::{Watch, detached};
 use crate::errors;
 use crate::mesh::Mesh;
 
-/// Which islands are kept: "largest", or the least volume in mm3.
-#[derive(Clone, Copy)]
+/// Which islands are kept: "largest", the least volume in mm3, or places in mm.
+#[derive(Clone)]
 pub(crate) struct Kept(pub(crate) Islands);
 
 /// Which cavities are filled: "all", or the largest volume in mm3.
@@ -25,6 +25,9 @@ impl FromPyObject<'_, '_> for Kept {
     type Error = PyErr;
 
     fn extract(value: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+        if let Ok(places) = value.extract::<Vec<[f64; 3]>>() {
+            return Ok(Self(Islands::At(places)));
+        }
         let mm3 = word_or_number(value, "largest", "islands", "volume in mm3")?;
         Ok(Self(mm3.map_or(Islands::Largest, Islands::AtLeastMm3)))
     }
@@ -100,7 +103,8 @@ pub(crate) fn fill_holes(
     cared_for(py, mesh, care, progress, cancel)
 }
 
-/// Keep the "largest" island, or all of at least a volume in mm3, each with its cavities.
+/// Keep the "largest" island, all of at least a volume in mm3, or the bones at a list of places (mm),
+/// each with its cavities.
 #[pyfunction]
 #[pyo3(signature = (mesh, *, islands, progress=None, cancel=None))]
 pub(crate) fn keep_islands(

@@ -23,7 +23,9 @@ pub(crate) fn check<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let watch = Watch::new(py, progress, cancel)?;
     let parts = mesh.parts();
-    let report = detached(py, watch, move |task| bonemesh::check(&parts.mesh()?, task))?;
+    let report = detached(py, watch, move |task| {
+        bonemesh::check(&parts.mesh()?, None, task)
+    })?;
     dict(py, &crate::report::json(&report))
 }
 

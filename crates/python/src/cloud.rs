@@ -46,7 +46,7 @@ pub(crate) fn point_cloud<'py>(
         threads: Threads::count(threads),
         ..Settings::default()
     };
-    threshold_hu.set(&mut settings);
+    settings = settings.with_threshold(threshold_hu.0);
     let volume = volume.shared();
     let cloud = detached(py, watch, move |task| {
         bonemesh::point_cloud(&volume, &settings, frame, task)

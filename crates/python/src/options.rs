@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 use std::ops::{Range, RangeInclusive};
 
 use bonemesh::{
-    CannySettings, CropBox, Error, HuThreshold, SeriesChoice, Settings, ThresholdPreset,
+    CannySettings, CropBox, Error, HuThreshold, SeriesChoice, ThresholdChoice, ThresholdPreset,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyString};
@@ -133,25 +133,14 @@ pub(crate) fn seed(py: Python<'_>, seed: i128) -> PyResult<u64> {
     })
 }
 
-/// A threshold: a number in HU, the name of a preset, or "auto".
+/// A threshold: a number in HU, or a name.
 #[derive(Clone, Copy)]
-pub(crate) enum Threshold {
-    Auto,
-    Given(HuThreshold),
-}
+pub(crate) struct Threshold(pub(crate) ThresholdChoice);
 
 impl Threshold {
     /// The published threshold for skulls, which functions take where none is given.
     pub(crate) fn skull() -> Self {
-        Self::Given(ThresholdPreset::Skull.threshold())
-    }
-
-    /// `settings` with this threshold.
-    pub(crate) fn set(self, settings: &mut Settings) {
-        match self {
-            Self::Auto => settings.auto_threshold = true,
-            Self::Given(threshold) => settings.threshold = threshold,
-        }
+        Self(ThresholdPreset::Skull.into())
     }
 }
 
@@ -159,18 +148,13 @@ impl FromPyObject<'_, '_> for Threshold {
     type Error = PyErr;
 
     fn extract(value: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
-        let py = value.py();
-        if !value.is_instance_of::<PyString>() {
-            let hu = HuThreshold::new(value.extract()?);
-            return hu.map(Self::Given).map_err(|e| errors::unusable(py, e));
-        }
-        match value.extract::<String>()?.as_str() {
-            "auto" => Ok(Self::Auto),
-            name => name
-                .parse::<ThresholdPreset>()
-                .map(|preset| Self::Given(preset.threshold()))
-                .map_err(|e| errors::argument(py, &format!("{e}, auto"))),
-        }
+        let choice = if value.is_instance_of::<PyString>() {
+            value.extract::<String>()?.parse()
+        } else {
+            HuThreshold::new(value.extract()?).map(ThresholdChoice::Given)
+        };
+        let choice = choice.map_err(|e| errors::unusable(value.py(), e))?;
+        Ok(Self(choice))
     }
 }
 

@@ -32,8 +32,10 @@ pub(crate) fn methods() -> Vec<&'static str> {
 /// Make the surface of the bone in a CT folder or volume: `Mesh` in patient millimetres (LPS).
 ///
 /// - `threshold_hu`: bone is strictly above it; 350 suits skulls, 600 the cortical bone of limbs.
-///   "auto" finds it in the volume, a name ("skull", "cortical", "thin-bone", "teeth") takes it
-///   from the literature; `report["threshold_reason"]` says how.
+///   "auto" finds it in the volume (or "edges", "multi-otsu", "otsu", each in its way), a name ("skull",
+///   "cortical", "thin-bone", "teeth") takes it from the literature; `report["threshold_reason"]` says how.
+/// - `local_leeway_hu`: lets the threshold follow the mean around each voxel by up to so many HU, such
+///   as 150, which keeps thin bone and narrow gaps and lets in more noise; None holds it everywhere.
 /// - `method`: "isosurface", the closed surface between voxels; "labelled", the closed boundary of
 ///   Delaunay tetrahedra, each bone or not by what lies in it, for thick slices; or "alpha", the
 ///   published method, the boundary of the Delaunay tetrahedra of edge points with a circumradius up
@@ -57,8 +59,8 @@ pub(crate) fn methods() -> Vec<&'static str> {
 /// - `damp_metal`: damps the streaks of metal before anything else is done; `report["metal"]` tells of
 ///   metal either way, None if there is none.
 /// - `holes`: "all", or the longest extent (mm) of the holes filled; None fills none.
-/// - `islands`: "largest", or the least volume (mm3) of the islands kept; None keeps all but
-///   specks of an isosurface or a labelled one, of less than 1 mm3 (`report["left_out_specks"]`).
+/// - `islands`: "largest", the least volume (mm3) of the islands kept, or a list of places (mm, x y z)
+///   whose bones are kept; None keeps all but specks of an isosurface or a labelled one, of less than 1 mm3 (`report["left_out_specks"]`).
 /// - `cavities`: "all", or the largest volume (mm3) of the cavities filled; None fills none.
 /// - `smooth_mm`: smooth and move no vertex further than this; None does not smooth.
 /// - `triangles`, `decimate_mm`: take triangles away until so many are left, or as long as the surface
@@ -70,7 +72,7 @@ pub(crate) fn methods() -> Vec<&'static str> {
 /// `Mesh.report` has counts, topology, volume and seconds, as `bonemesh render --json` prints them.
 #[pyfunction]
 #[pyo3(signature = (
-    path_or_volume, *, threshold_hu=Threshold::skull(), method=None, sigma=1.0, series=None,
+    path_or_volume, *, threshold_hu=Threshold::skull(), local_leeway_hu=None, method=None, sigma=1.0, series=None,
     one_series=false, crop=None, sample_percent=None, sampler="uniform", seed=0, alpha_mm=None, radii_mm=None, depth=8, scale=1.1, true_edges=true, keep_table=false, damp_metal=false, holes=None, islands=None,
     cavities=None, smooth_mm=None, triangles=None, decimate_mm=None, threads=None, progress=None,
     cancel=None
@@ -80,6 +82,7 @@ pub(crate) fn render(
     py: Python<'_>,
     path_or_volume: &Bound<'_, PyAny>,
     threshold_hu: Threshold,
+    local_leeway_hu: Option<f64>,
     method: Option<&str>,
     sigma: f64,
     series: Option<Choice>,
@@ -107,6 +110,7 @@ pub(crate) fn render(
 ) -> PyResult<Mesh> {
     let watch = Watch::new(py, progress, cancel)?;
     let mut settings = Settings {
+        local_leeway_hu,
         canny: options::canny(py, sigma, None)?,
         method: match method {
             Some(name) => name.parse().map_err(|e| errors::unusable(py, e))?,
@@ -140,7 +144,7 @@ pub(crate) fn render(
         threads: Threads::count(threads),
         ..Settings::default()
     };
-    threshold_hu.set(&mut settings);
+    settings = settings.with_threshold(threshold_hu.0);
     let source = source(path_or_volume, &settings)?;
     detached(py, watch, move |task| {
         let rendered = source.render(&settings, task)?;

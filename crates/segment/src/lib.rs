@@ -44,6 +44,7 @@
 #![forbid(unsafe_code)]
 
 mod canny;
+mod choice;
 mod components;
 mod edges;
 mod local;
@@ -59,9 +60,10 @@ use bonemesh_volume::Geometry;
 use ndarray::Array3;
 
 pub use canny::{CannySettings, canny, detect_edges};
+pub use choice::{ThresholdChoice, ThresholdFinder};
 pub use components::{Components, Connectivity, connected_components, largest_component};
 pub use edges::{EdgeThreshold, edge_threshold};
-pub use local::{LocalThreshold, local_threshold};
+pub use local::{LocalThreshold, level_to_threshold, local_threshold};
 pub use otsu::{multi_otsu, otsu};
 pub use outside::outside_air;
 pub use presets::ThresholdPreset;
@@ -74,11 +76,12 @@ pub use threshold::{HuThreshold, threshold};
 #[derive(Debug, thiserror::Error)]
 pub enum SegmentError {
     /// A threshold that is no number.
-    #[error("the threshold {0} is no Hounsfield value; use a number such as 350")]
+    #[error("the threshold {0:e} is no Hounsfield value; use a number such as 350")]
     Threshold(f64),
     /// No voxel is bone.
     #[error(
-        "nothing lies above the threshold of {threshold_hu} HU: the volume spans {lowest_hu} to {highest_hu} HU; choose a threshold below {highest_hu}"
+        "nothing lies above the threshold of {threshold_hu} HU: {}",
+        spanned("below", *lowest_hu, *highest_hu)
     )]
     NothingAbove {
         /// The threshold that was asked for (HU).
@@ -90,7 +93,8 @@ pub enum SegmentError {
     },
     /// Every voxel is bone, so nothing has an edge.
     #[error(
-        "everything lies above the threshold of {threshold_hu} HU: the volume spans {lowest_hu} to {highest_hu} HU; choose a threshold of at least {lowest_hu}"
+        "everything lies above the threshold of {threshold_hu} HU: {}",
+        spanned("of at least", *lowest_hu, *highest_hu)
     )]
     NothingBelow {
         /// The threshold that was asked for (HU).
@@ -163,21 +167,22 @@ pub enum SegmentError {
         "all voxels have the same value, so no threshold can be found; give one in HU, such as 350"
     )]
     NoSuggestion,
-    /// A name that no preset has.
-    #[error("there is no threshold `{0}`; use a number in HU, or one of: {presets}", presets = preset_names())]
-    NoSuchPreset(String),
+    /// `edges` and the like found none.
+    #[error("`{0}` finds no threshold in this scan; use `auto`, or a number in HU, such as 350")]
+    NotFound(ThresholdFinder),
+    /// A name that no threshold has.
+    #[error("there is no threshold `{0}`; use a number in HU, or one of: {names}", names = names())]
+    NoSuchThreshold(String),
     /// A window that cannot be used.
     #[error("a window of {0} mm cannot be used; choose a number above 0, such as 10")]
     Window(f64),
     /// A leeway or contrast that cannot be used.
-    #[error(
-        "a leeway of {leeway_hu} HU with a contrast of {contrast_hu} HU cannot be used; choose numbers from 0, such as 150 and 60"
-    )]
+    #[error("a {what} of {hu} HU cannot be used; choose a number from 0, such as 150")]
     Local {
-        /// How far a local threshold may lie from the global one.
-        leeway_hu: f64,
-        /// Standard deviation from which it may.
-        contrast_hu: f64,
+        /// Which of them.
+        what: &'static str,
+        /// Its value.
+        hu: f64,
     },
     /// No seed to grow from.
     #[error("there is no seed to grow from; give at least one voxel (slice, row, column)")]
@@ -225,8 +230,37 @@ pub enum SegmentError {
     Cancelled(#[from] Cancelled),
 }
 
-fn preset_names() -> String {
-    ThresholdPreset::ALL.map(ThresholdPreset::name).join(", ")
+/// What a volume spans, and which threshold would do.
+fn spanned(which: &str, lowest_hu: f64, highest_hu: f64) -> String {
+    if lowest_hu < highest_hu {
+        let bound = if which == "below" {
+            highest_hu
+        } else {
+            lowest_hu
+        };
+        format!(
+            "the volume spans {lowest_hu} to {highest_hu} HU; choose a threshold {which} {bound}"
+        )
+    } else {
+        format!(
+            "every voxel of the volume has {lowest_hu} HU; choose another series, or a larger crop box"
+        )
+    }
+}
+
+impl SegmentError {
+    /// A difference in HU, if it is one.
+    fn local(what: &'static str, hu: f64) -> Result<f64, Self> {
+        if (0.0..f64::INFINITY).contains(&hu) {
+            Ok(hu)
+        } else {
+            Err(Self::Local { what, hu })
+        }
+    }
+}
+
+fn names() -> String {
+    ThresholdChoice::names().collect::<Vec<_>>().join(", ")
 }
 
 /// Which voxels are bone, `[slice, row, column]`.

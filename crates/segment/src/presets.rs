@@ -6,9 +6,8 @@
 //! tissue: what is published of them are mean values, not borders.
 
 use std::fmt;
-use std::str::FromStr;
 
-use crate::{HuThreshold, SegmentError};
+use crate::HuThreshold;
 
 /// A threshold from the literature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -86,34 +85,16 @@ impl fmt::Display for ThresholdPreset {
     }
 }
 
-impl FromStr for ThresholdPreset {
-    type Err = SegmentError;
-
-    fn from_str(name: &str) -> Result<Self, SegmentError> {
-        let named = Self::ALL.into_iter().find(|p| p.name() == name);
-        named.ok_or_else(|| SegmentError::NoSuchPreset(name.to_owned()))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn every_preset_is_found_by_its_name_and_its_value() {
+    fn every_preset_is_found_by_its_value_and_has_a_source() {
         for preset in ThresholdPreset::ALL {
-            assert_eq!(preset.name().parse::<ThresholdPreset>().unwrap(), preset);
             assert_eq!(ThresholdPreset::of(preset.threshold()), Some(preset));
             assert!(preset.source().contains(char::is_numeric));
         }
         assert_eq!(ThresholdPreset::of(HuThreshold::new(351.0).unwrap()), None);
-    }
-
-    #[test]
-    fn an_unknown_name_is_answered_with_the_known_ones() {
-        let error = "bone".parse::<ThresholdPreset>().unwrap_err().to_string();
-        for preset in ThresholdPreset::ALL {
-            assert!(error.contains(preset.name()), "{error}");
-        }
     }
 }

@@ -10,7 +10,8 @@ use bonemesh_task::Task;
 use bonemesh_volume::{Histogram, Volume};
 
 use crate::{
-    EdgeThreshold, HuThreshold, SegmentError, ThresholdPreset, edge_threshold, multi_otsu, otsu,
+    EdgeThreshold, HuThreshold, SegmentError, ThresholdFinder, ThresholdPreset, edge_threshold,
+    multi_otsu, otsu,
 };
 
 /// A threshold with its name and its reason.
@@ -43,6 +44,19 @@ impl Suggestions {
     pub fn recommended(&self) -> Result<&Suggestion, SegmentError> {
         let index = self.recommended.ok_or(SegmentError::NoSuggestion)?;
         Ok(&self.all[index])
+    }
+
+    /// The one that a finder has found.
+    ///
+    /// # Errors
+    /// [`SegmentError::NoSuggestion`] or [`SegmentError::NotFound`] if there is none.
+    pub fn by(&self, finder: ThresholdFinder) -> Result<&Suggestion, SegmentError> {
+        let recommended = self.recommended()?;
+        if finder == ThresholdFinder::Auto {
+            return Ok(recommended);
+        }
+        let found = self.all.iter().find(|s| s.name == finder.name());
+        found.ok_or(SegmentError::NotFound(finder))
     }
 }
 
@@ -78,7 +92,7 @@ pub fn suggest_thresholds(
     }
     if let Ok(threshold) = otsu(histogram) {
         all.push(Suggestion {
-            name: "otsu",
+            name: ThresholdFinder::Otsu.name(),
             threshold,
             reason: "two classes: of a patient in air, the body".to_owned(),
             source: OTSU,
@@ -104,7 +118,7 @@ pub fn suggest_thresholds(
 fn from_edges(found: &EdgeThreshold) -> Suggestion {
     let [low, high] = found.quartiles_hu;
     Suggestion {
-        name: "edges",
+        name: ThresholdFinder::Edges.name(),
         threshold: found.threshold,
         reason: format!(
             "halfway between soft tissue and bone at {} edge pixels, half of them between {low} and {high} HU",
@@ -117,7 +131,7 @@ fn from_edges(found: &EdgeThreshold) -> Suggestion {
 fn from_classes(thresholds: &[HuThreshold]) -> Suggestion {
     let [lower, upper] = [thresholds[0], thresholds[1]];
     Suggestion {
-        name: "multi-otsu",
+        name: ThresholdFinder::MultiOtsu.name(),
         threshold: upper,
         reason: format!(
             "the upper of three classes, which part at {} and {} HU",

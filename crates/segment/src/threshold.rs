@@ -7,6 +7,9 @@ use ndarray::{Array3, ArrayView2, ArrayViewMut2, Axis, Zip};
 
 use crate::{Mask, SegmentError};
 
+/// No scan holds larger values, whatever its unit: pixels have 32 bits at most.
+const MOST_HU: f64 = 1e10;
+
 /// A finite bone threshold in Hounsfield units; bone is strictly above it.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct HuThreshold(f64);
@@ -15,9 +18,9 @@ impl HuThreshold {
     /// Checks the value.
     ///
     /// # Errors
-    /// [`SegmentError::Threshold`] for NaN and infinities.
+    /// [`SegmentError::Threshold`] for NaN, infinities and what no scan holds.
     pub fn new(hu: f64) -> Result<Self, SegmentError> {
-        if hu.is_finite() {
+        if hu.abs() <= MOST_HU {
             Ok(Self(hu))
         } else {
             Err(SegmentError::Threshold(hu))

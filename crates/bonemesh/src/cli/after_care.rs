@@ -18,9 +18,9 @@ pub(super) struct AfterCareArguments {
     /// Fill `all` holes of an open mesh, or those that are no longer than this.
     #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = after_care::holes)]
     fill_holes: Option<Holes>,
-    /// Keep only the `largest` island of the mesh, or all of at least this volume; a rendered
-    /// isosurface or labelled one lacks specks under 1 mm3 unless this is given.
-    #[arg(long, value_name = "MM3", allow_negative_numbers = true, value_parser = after_care::islands)]
+    /// Keep only the `largest` island of the mesh, or all of at least this volume, or the bones at
+    /// these places (mm, in the mesh's frame; several with a semicolon between them).
+    #[arg(long, value_name = "MM3|X,Y,Z", allow_negative_numbers = true, value_parser = after_care::islands)]
     islands: Option<Islands>,
     /// Fill `all` cavities inside the bone, or those of at most this volume.
     #[arg(long, value_name = "MM3", allow_negative_numbers = true, value_parser = after_care::cavities)]
@@ -40,7 +40,7 @@ impl AfterCareArguments {
     pub(super) fn settings(&self) -> AfterCare {
         AfterCare {
             holes: self.fill_holes,
-            islands: self.islands,
+            islands: self.islands.clone(),
             cavities: self.fill_cavities,
             smooth_mm: self.smooth,
             decimation: Decimation {

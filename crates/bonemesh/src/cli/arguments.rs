@@ -6,13 +6,13 @@ use std::path::PathBuf;
 use bonemesh_cloud::{CloudFormat, Frame, Percent, Sampler};
 use bonemesh_dicom::SeriesChoice;
 use bonemesh_mesh::MeshFormat;
-use bonemesh_segment::CannySettings;
+use bonemesh_segment::{CannySettings, ThresholdChoice};
 use bonemesh_volume::CropBox;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::after_care::{AfterCareArguments, Repair};
-use super::histogram::{HistogramArguments, HuChoice};
+use super::histogram::HistogramArguments;
 use super::phantom::PhantomArguments;
 use super::roi::Roi;
 use super::surface::{AlphaChoice, StudyArguments};
@@ -44,10 +44,7 @@ pub(super) enum Command {
     /// Take the region under selected vertices out of a mesh.
     Roi(Roi),
     /// Check whether a mesh can be printed: closed, manifold, no self-intersections, thinnest wall.
-    Check {
-        /// Mesh file (.stl, .ply, .obj, .3mf).
-        mesh: PathBuf,
-    },
+    Check(Check),
     /// Care for a mesh: fill holes, take islands away, fill cavities, smooth, take triangles away.
     Repair(Repair),
     /// Write a phantom as a DICOM CT series, with its truth beside it.
@@ -68,8 +65,8 @@ pub(super) struct Info {
 
 #[derive(Debug, Args)]
 pub(super) struct EdgeArguments {
-    /// Bone is strictly above this Hounsfield value; or `auto`, or a published one that `bonemesh
-    /// histogram` lists, such as skull or cortical.
+    /// Bone is strictly above this Hounsfield value; or a name that `bonemesh histogram` lists: a way
+    /// to find it, such as auto or multi-otsu, or a published value, such as skull or cortical.
     #[arg(
         short = 't',
         long,
@@ -78,7 +75,11 @@ pub(super) struct EdgeArguments {
         default_value = "350",
         allow_negative_numbers = true
     )]
-    hu: HuChoice,
+    hu: ThresholdChoice,
+    /// Let the threshold follow the mean around each voxel by up to so many HU, such as 150: keeps
+    /// thin bone and narrow gaps, and lets in more noise.
+    #[arg(long, value_name = "HU", allow_negative_numbers = true, value_parser = number)]
+    local: Option<f64>,
     /// Canny's smoothing in pixels.
     #[arg(long, default_value = "1.0", allow_negative_numbers = true, value_parser = canny)]
     sigma: CannySettings,
@@ -124,6 +125,13 @@ pub(super) struct SurfaceArguments {
     alpha: Option<AlphaChoice>,
     #[command(flatten)]
     study: StudyArguments,
+    #[command(flatten)]
+    after_care: AfterCareArguments,
+}
+
+/// What can only be done with voxels.
+#[derive(Debug, Args)]
+pub(super) struct VoxelArguments {
     /// Puts an isosurface or a labelled one where the grey equals the threshold, not at the true
     /// edges of the bone.
     #[arg(long)]
@@ -131,8 +139,9 @@ pub(super) struct SurfaceArguments {
     /// Keeps the scanner's table and headrest in an isosurface or a labelled one.
     #[arg(long)]
     keep_table: bool,
-    #[command(flatten)]
-    after_care: AfterCareArguments,
+    /// Damps the streaks of metal (fillings, implants, screws) before anything else is done.
+    #[arg(long)]
+    damp_metal: bool,
 }
 
 #[derive(Debug, Args)]
@@ -142,13 +151,25 @@ pub(super) struct Render {
     /// Mesh file to write (.stl, .ply, .obj, .3mf).
     #[arg(short, long, value_parser = mesh_file())]
     pub(super) output: PathBuf,
-    /// Damps the streaks of metal (fillings, implants, screws) before anything else is done.
-    #[arg(long)]
-    pub(super) damp_metal: bool,
     #[command(flatten)]
     pub(super) edges: EdgeArguments,
     #[command(flatten)]
     pub(super) surface: SurfaceArguments,
+    #[command(flatten)]
+    pub(super) voxels: VoxelArguments,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Check {
+    /// Mesh file (.stl, .ply, .obj, .3mf).
+    pub(super) mesh: PathBuf,
+    /// File (.ply) for the mesh with the thickness of its wall (mm) at every vertex, as the property
+    /// `wall_mm`.
+    #[arg(long, value_name = "PLY")]
+    pub(super) walls: Option<PathBuf>,
+    /// Worker threads; the result does not depend on it.
+    #[arg(long)]
+    pub(super) threads: Option<NonZeroUsize>,
 }
 
 #[derive(Debug, Args)]
@@ -202,13 +223,8 @@ impl EdgeArguments {
         let sampling = self.sampling.settings();
         let of_surface = |s: &SurfaceArguments| s.settings(sampling.is_some());
         let made = surface.map(of_surface).unwrap_or_default();
-        let (threshold, auto_threshold) = match self.hu {
-            HuChoice::Auto => (made.threshold, true),
-            HuChoice::Given(threshold) => (threshold, false),
-        };
         Settings {
-            threshold,
-            auto_threshold,
+            local_leeway_hu: self.local,
             canny: self.sigma,
             crop: self.crop.clone(),
             series: self.series.clone(),
@@ -217,6 +233,7 @@ impl EdgeArguments {
             threads: self.threads,
             ..made
         }
+        .with_threshold(self.hu)
     }
 }
 
@@ -227,6 +244,18 @@ impl SamplingArguments {
             sampler: self.sampler,
             seed: self.seed,
         })
+    }
+}
+
+impl Render {
+    /// All settings of a rendering.
+    pub(super) fn settings(&self) -> Settings {
+        Settings {
+            true_edges: !self.voxels.at_threshold,
+            leave_out_table: !self.voxels.keep_table,
+            damp_metal: self.voxels.damp_metal,
+            ..self.edges.settings(Some(&self.surface))
+        }
     }
 }
 
@@ -244,8 +273,6 @@ impl SurfaceArguments {
                 .unwrap_or_else(|| Method::unless_named(of_points || self.alpha.is_some())),
             alpha_mm,
             alpha_rule,
-            true_edges: !self.at_threshold,
-            leave_out_table: !self.keep_table,
             after_care: self.after_care.settings(),
             ..Settings::default()
         })

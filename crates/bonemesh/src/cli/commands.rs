@@ -4,13 +4,13 @@ use std::path::Path;
 use std::time::Instant;
 
 use bonemesh_cloud::{read_cloud, write_cloud};
-use bonemesh_mesh::{read_mesh, write_mesh};
+use bonemesh_mesh::{check_values_target, read_mesh, write_mesh, write_with_values};
 use bonemesh_phantom::write_phantom;
 use bonemesh_roi::read_selection;
 use bonemesh_task::{Task, pool};
 use serde_json::json;
 
-use super::arguments::{CloudArguments, Command, Info, MeshArguments, Render};
+use super::arguments::{Check, CloudArguments, Command, Info, MeshArguments, Render};
 use super::output::Answer;
 use super::phantom::PhantomArguments;
 use super::roi::Roi;
@@ -19,10 +19,13 @@ use crate::region::{RegionRequest, select_roi};
 use crate::render::{Rendered, mesh_cloud, point_cloud, render};
 use crate::source::{Reading, Source};
 use crate::thresholds::choose_threshold;
-use crate::{Error, Settings, check};
+use crate::{Error, Settings, check_walls};
 
-/// Runs `command`; the error is the one line that the user reads.
-pub(super) fn run(command: &Command, task: &Task) -> Result<Answer, String> {
+/// The property of a file's vertices with the thickness of the wall.
+const WALLS: &str = "wall_mm";
+
+/// Runs `command`.
+pub(super) fn run(command: &Command, task: &Task) -> Result<Answer, Error> {
     match command {
         Command::Info(arguments) => info(arguments, task),
         Command::Histogram(arguments) => histogram::run(arguments, task),
@@ -30,11 +33,10 @@ pub(super) fn run(command: &Command, task: &Task) -> Result<Answer, String> {
         Command::Cloud(arguments) => run_cloud(arguments, task),
         Command::Mesh(arguments) => run_mesh(arguments, task),
         Command::Roi(arguments) => run_roi(arguments, task),
-        Command::Check { mesh } => run_check(mesh, task),
+        Command::Check(arguments) => run_check(arguments, task),
         Command::Repair(arguments) => after_care::run(arguments, task),
         Command::Phantom(arguments) => run_phantom(arguments, task),
     }
-    .map_err(|e| e.to_string())
 }
 
 fn info(arguments: &Info, task: &Task) -> Result<Answer, Error> {
@@ -51,11 +53,7 @@ fn info(arguments: &Info, task: &Task) -> Result<Answer, Error> {
 
 fn run_render(arguments: &Render, task: &Task) -> Result<Answer, Error> {
     bonemesh_mesh::check_target(&arguments.output)?;
-    let settings = Settings {
-        damp_metal: arguments.damp_metal,
-        ..arguments.edges.settings(Some(&arguments.surface))
-    };
-    let rendered = render(&arguments.directory, &settings, task)?;
+    let rendered = render(&arguments.directory, &arguments.settings(), task)?;
     save(rendered, &arguments.output, task)
 }
 
@@ -125,10 +123,24 @@ fn run_roi(arguments: &Roi, task: &Task) -> Result<Answer, Error> {
     Ok(Answer::new(&region.report, text).with("output", arguments.output.to_string_lossy()))
 }
 
-fn run_check(file: &Path, task: &Task) -> Result<Answer, Error> {
-    let mesh = read_mesh(file, task)?;
-    let report = check(&mesh, task)?;
-    Ok(Answer::new(&report, text::checked(&report, file)))
+fn run_check(arguments: &Check, task: &Task) -> Result<Answer, Error> {
+    if let Some(path) = &arguments.walls {
+        check_values_target(path)?;
+    }
+    let mesh = read_mesh(&arguments.mesh, task)?;
+    let checked = check_walls(&mesh, arguments.threads, task)?;
+    let answer = Answer::new(
+        &checked.report,
+        text::checked(&checked.report, &arguments.mesh),
+    );
+    let Some(path) = &arguments.walls else {
+        return Ok(answer);
+    };
+    if checked.walls_mm.is_empty() {
+        return Err(Error::NoWalls { path: path.clone() });
+    }
+    write_with_values(path, &checked.mesh, WALLS, &checked.walls_mm, task)?;
+    Ok(answer.with("walls", path.to_string_lossy()))
 }
 
 fn run_phantom(arguments: &PhantomArguments, task: &Task) -> Result<Answer, Error> {

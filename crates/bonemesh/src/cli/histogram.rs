@@ -3,10 +3,9 @@
 use std::fmt::Write;
 use std::num::{NonZeroU16, NonZeroUsize};
 use std::path::PathBuf;
-use std::str::FromStr;
 
 use bonemesh_dicom::SeriesChoice;
-use bonemesh_segment::{HuThreshold, ThresholdPreset};
+use bonemesh_segment::ThresholdChoice;
 use bonemesh_task::Task;
 use bonemesh_volume::CropBox;
 use clap::Args;
@@ -18,33 +17,6 @@ use crate::thresholds::{HistogramReport, HistogramRequest, histogram};
 
 /// Cubic millimetres in a cubic centimetre.
 const MM3_PER_CM3: f64 = 1000.0;
-
-/// What is written after `--hu`.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum HuChoice {
-    /// Found in the volume.
-    Auto,
-    /// A number, or that of a preset.
-    Given(HuThreshold),
-}
-
-impl FromStr for HuChoice {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        if text == "auto" {
-            return Ok(Self::Auto);
-        }
-        if let Ok(hu) = text.parse() {
-            return HuThreshold::new(hu)
-                .map(Self::Given)
-                .map_err(|e| e.to_string());
-        }
-        text.parse::<ThresholdPreset>()
-            .map(|preset| Self::Given(preset.threshold()))
-            .map_err(|e| format!("{e}, auto"))
-    }
-}
 
 #[derive(Debug, Args)]
 pub(super) struct HistogramArguments {
@@ -126,8 +98,9 @@ fn in_words(report: &HistogramReport) -> String {
         ));
         line(format!("{:40}{}", "", s.source));
     }
-    let names = ThresholdPreset::ALL.map(ThresholdPreset::name).join(", ");
-    line(format!("use one with --hu: auto, {names}, or any number"));
+    let names: Vec<&str> = ThresholdChoice::names().collect();
+    let names = names.join(", ");
+    line(format!("use one with --hu: {names}, or any number"));
     for warning in &report.warnings {
         line(format!("note: {warning}"));
     }

@@ -53,11 +53,14 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let watcher = progress::watch(&task);
     let result = commands::run(&arguments.command, &task);
     watcher.finish();
-    match result.and_then(|answer| output::print(&answer, arguments.json)) {
-        Ok(()) => 0,
-        Err(message) => {
-            eprintln!("bonemesh: {}", text::printable(&message));
-            FAILED
-        }
-    }
+    let (message, code) = match result {
+        Ok(answer) => match output::print(&answer, arguments.json) {
+            Ok(()) => return 0,
+            Err(message) => (message, FAILED),
+        },
+        Err(error) if error.is_of_choices() => (error.to_string(), USAGE),
+        Err(error) => (error.to_string(), FAILED),
+    };
+    eprintln!("bonemesh: {}", text::printable(&message));
+    code
 }

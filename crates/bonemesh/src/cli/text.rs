@@ -60,11 +60,11 @@ pub(super) fn rendered(report: &RenderReport, file: &Path) -> String {
     };
     line(format!("{}", file.display()));
     line(format!(
-        "  {} triangles, {} vertices, {} components, {:.1} cm3",
+        "  {} triangles, {} vertices, {}{}",
         report.triangles,
         report.vertices,
-        report.components,
-        report.volume_mm3 / MM3_PER_CM3
+        components(report.components, report.cavities),
+        enclosed(report.watertight, report.volume_mm3)
     ));
     if let (Some(points), Some(alpha_mm), Some(tetrahedra)) =
         (report.points, report.alpha_mm, report.tetrahedra)
@@ -76,8 +76,8 @@ pub(super) fn rendered(report: &RenderReport, file: &Path) -> String {
     if let (Some(coefficient), Some(bone_mm3)) = (report.alpha_coefficient, report.bone_volume_mm3)
     {
         line(format!(
-            "  alpha is {coefficient:.3} times the mean distance, for the bone's {:.2} cm3",
-            bone_mm3 / MM3_PER_CM3
+            "  alpha is {coefficient:.3} times the mean distance, for the bone's {}",
+            volume(bone_mm3)
         ));
     }
     line(format!("  {}", verdict(report.watertight, report.manifold)));
@@ -92,8 +92,8 @@ pub(super) fn rendered(report: &RenderReport, file: &Path) -> String {
     for (name, left_out, remedy) in left_out {
         if let Some(left_out) = left_out {
             line(format!(
-                "  left out what looks like {name}: {:.2} cm3 in {} islands ({remedy})",
-                left_out.volume_mm3 / MM3_PER_CM3,
+                "  left out what looks like {name}: {} in {} islands ({remedy})",
+                volume(left_out.volume_mm3),
                 left_out.islands
             ));
         }
@@ -169,7 +169,7 @@ pub(super) fn after_care(report: &AfterCareReport) -> String {
     ];
     for (name, count, mm3) in parts.into_iter().filter(|(_, count, _)| *count > 0) {
         // Writing to a String cannot fail.
-        let _ = writeln!(text, "  {count} {name}, {mm3:.1} mm3");
+        let _ = writeln!(text, "  {count} {name}, {}", volume(mm3));
     }
     if let (Some(mm), Some(back)) = (report.largest_move_mm, report.put_back_vertices) {
         let _ = writeln!(
@@ -178,12 +178,45 @@ pub(super) fn after_care(report: &AfterCareReport) -> String {
         );
     }
     if let (Some(count), Some(held)) = (report.removed_triangles, report.held_vertices) {
+        let held = match held {
+            0 => String::new(),
+            _ => format!(", {held} vertices left as they were"),
+        };
+        let _ = writeln!(text, "  {count} triangles taken away{held}");
+    }
+    if let Some(wanted) = report.missed_triangles {
         let _ = writeln!(
             text,
-            "  {count} triangles taken away, {held} vertices left as they were"
+            "  {wanted} triangles were asked for, but with fewer than are left the surface would lose its shape or pass through itself"
         );
     }
     text
+}
+
+/// A volume in cm3, or in mm3 where there are few of them.
+fn volume(mm3: f64) -> String {
+    match mm3.abs() {
+        few if few < 1.0 => format!("{mm3:.3} mm3"),
+        few if few < MM3_PER_CM3 => format!("{mm3:.1} mm3"),
+        _ => format!("{:.2} cm3", mm3 / MM3_PER_CM3),
+    }
+}
+
+/// How many parts there are, and how many of them are inside others.
+fn components(components: usize, cavities: usize) -> String {
+    match cavities {
+        0 => format!("{components} components"),
+        _ => format!("{components} components ({cavities} walls of cavities)"),
+    }
+}
+
+/// What a surface encloses, where it does: of an open one the number would say nothing.
+fn enclosed(watertight: bool, mm3: f64) -> String {
+    if watertight {
+        format!(", {}", volume(mm3))
+    } else {
+        String::new()
+    }
 }
 
 /// The threshold, and where it is from.
@@ -197,7 +230,7 @@ pub(super) fn threshold(hu: f64, reason: Option<&str>) -> String {
 /// `roi`.
 pub(super) fn region(report: &RegionReport, file: &Path) -> String {
     format!(
-        "{}\n  {} selected vertices, {} points behind them, thickness {} mm\n  {} triangles, {} vertices, {} components, {:.2} cm3\n  {}\n  {:.2} s\n",
+        "{}\n  {} selected vertices, {} points behind them, thickness {} mm\n  {} triangles, {} vertices, {} components{}\n  {}\n  {:.2} s\n",
         file.display(),
         report.selected,
         report.kept_points,
@@ -205,7 +238,7 @@ pub(super) fn region(report: &RegionReport, file: &Path) -> String {
         report.triangles,
         report.vertices,
         report.components,
-        report.volume_mm3 / MM3_PER_CM3,
+        enclosed(report.watertight, report.volume_mm3),
         verdict(report.watertight, report.manifold),
         report.seconds,
     )
@@ -218,7 +251,16 @@ pub(super) fn checked(check: &PrintCheck, file: &Path) -> String {
     let mut rows = vec![
         ("vertices", report.vertices.to_string()),
         ("triangles", report.triangles.to_string()),
-        ("components", report.components.to_string()),
+        (
+            "components",
+            match report.cavities {
+                0 => report.components.to_string(),
+                cavities => format!(
+                    "{}, {cavities} of them walls of cavities",
+                    report.components
+                ),
+            },
+        ),
         (
             "watertight",
             format!(
@@ -248,7 +290,11 @@ pub(super) fn checked(check: &PrintCheck, file: &Path) -> String {
         ),
         (
             "volume",
-            format!("{:.2} cm3", report.volume_mm3 / MM3_PER_CM3),
+            if report.watertight {
+                volume(report.volume_mm3)
+            } else {
+                "none, the surface is open".to_owned()
+            },
         ),
         ("area", format!("{:.2} cm2", report.area_mm2 / 100.0)),
     ];

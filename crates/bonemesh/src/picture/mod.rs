@@ -262,10 +262,8 @@ fn suggestions(canvas: &mut Canvas, scale: &Scale, suggestions: &[SuggestionRepo
 }
 
 fn style(suggestion: &SuggestionReport) -> (Colour, Option<usize>) {
-    let is_preset = suggestion
-        .name
-        .parse::<bonemesh_segment::ThresholdPreset>()
-        .is_ok();
+    let presets = bonemesh_segment::ThresholdPreset::ALL;
+    let is_preset = presets.iter().any(|p| p.name() == suggestion.name);
     match (suggestion.recommended, is_preset) {
         (true, _) => (RECOMMENDED, None),
         (false, false) => (FOUND, None),

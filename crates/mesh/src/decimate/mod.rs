@@ -61,7 +61,8 @@ pub struct Decimated {
 /// The mesh is taken as its file gives it back ([`TriangleMesh::as_written`]). A closed 2-manifold
 /// stays one, with as many parts and holes through them; rims and vertices that are no part of a
 /// manifold stay in their places. Triangles of the result meet, exactly, only where those of
-/// the given mesh do. So the number asked for may not be reached.
+/// the given mesh do. So the number asked for may not be reached; then a smaller one may leave a few
+/// triangles more.
 ///
 /// [`Decimation::error_mm`] means: every point of the given surface is at most that far from the
 /// result, which is proven; and each corner, edge middle and centroid of the result's triangles is
@@ -106,10 +107,11 @@ pub fn decimate(
             run.collapse(end, at, task)?;
         }
         let standing = run.standing();
-        steps = run.steps;
-        let result = TriangleMesh::new(run.vertices_mm, run.stars.triangles().collect())?;
+        let result = TriangleMesh::new(run.vertices_mm.clone(), run.stars.triangles().collect())?;
         let faults = comparison.faults(&result, &run.stars, &standing, task)?;
-        is_narrower = bounds.narrowed(&faults, &standing);
+        let reached = run.reached(&faults.meeting);
+        steps = run.steps;
+        is_narrower = bounds.narrowed(&faults, &standing, &reached);
         if !is_narrower.contains(&true) {
             return Ok(Decimated {
                 mesh: result.compacted(),

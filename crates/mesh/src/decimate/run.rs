@@ -5,6 +5,7 @@ use std::collections::BinaryHeap;
 
 use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 use super::bounds::{Bounds, Hold};
 use super::collapse::Surroundings;
@@ -319,6 +320,18 @@ impl<'a> Run<'a> {
         self.versions[kept] += 1;
         self.versions[gone] = GONE;
         self.steps.push(step);
+    }
+
+    /// For each of some vertices the limit (mm2, squared) that would just have allowed what it
+    /// stands for.
+    pub(super) fn reached(&self, vertices: &[u32]) -> FxHashMap<u32, f64> {
+        let reached = |&vertex: &u32| {
+            let quadric = &self.quadrics[vertex as usize];
+            let place = minus(self.vertices_mm[vertex as usize], self.middle);
+            let weight = quadric.weight.max(f64::MIN_POSITIVE);
+            (vertex, quadric.at(place) / (TYPICAL * TYPICAL * weight))
+        };
+        vertices.iter().map(reached).collect()
     }
 
     /// For each vertex of the given mesh the one that stands for it now.

@@ -123,10 +123,50 @@ pub fn write_mesh(
     task.begin("write", mesh.triangles().len());
     atomic::write(path, |file| match format {
         MeshFormat::Stl => stl_write::write(file, mesh, task),
-        MeshFormat::Ply => ply_write::write(file, mesh, task),
+        MeshFormat::Ply => ply_write::write(file, mesh, None, task),
         MeshFormat::Obj => obj_write::write(file, mesh, task),
         MeshFormat::ThreeMf => threemf_write::write(file, mesh, task),
     })
+}
+
+/// Writes a mesh as PLY, as [`write_mesh`] does, with a number for each vertex as a property of this
+/// name, in which viewers can colour it. What is no number, or infinite, stays so.
+///
+/// # Errors
+/// Those of [`write_mesh`], [`MeshError::NotPly`] for another extension, [`MeshError::Values`] unless
+/// there are as many numbers as vertices.
+pub fn write_with_values(
+    path: impl AsRef<Path>,
+    mesh: &TriangleMesh,
+    name: &str,
+    of_vertices: &[f64],
+    task: &Task,
+) -> Result<(), MeshError> {
+    let path = path.as_ref();
+    check_values_target(path)?;
+    check_writable(path, mesh)?;
+    let vertices = mesh.vertices_mm().len();
+    if of_vertices.len() != vertices {
+        let values = of_vertices.len();
+        return Err(MeshError::Values { values, vertices });
+    }
+    task.begin("write", mesh.triangles().len());
+    let values = Some(ply_write::Values { name, of_vertices });
+    atomic::write(path, |file| ply_write::write(file, mesh, values, task))
+}
+
+/// Tells now whether [`write_with_values`] could write `path`.
+///
+/// # Errors
+/// Those of [`write_with_values`].
+pub fn check_values_target(path: impl AsRef<Path>) -> Result<(), MeshError> {
+    let path = path.as_ref();
+    match MeshFormat::of(path) {
+        Ok(MeshFormat::Ply) => atomic::probe(path),
+        _ => Err(MeshError::NotPly {
+            path: path.to_path_buf(),
+        }),
+    }
 }
 
 /// Refuses what no file can hold.

@@ -47,8 +47,21 @@ pub(super) fn read(path: &Path, task: &Task) -> Result<TriangleMesh, MeshError> 
         task.advance(length)?;
     }
     let mesh = TriangleMesh::new(body.vertices_mm, body.triangles)
-        .map_err(|e| malformed(path, "OBJ", e.to_string()))?;
+        .map_err(|e| malformed(path, "OBJ", in_its_numbers(&e)))?;
     Ok(mesh.merged(task)?)
+}
+
+/// An error in the numbers of the file, which begin with 1.
+fn in_its_numbers(error: &MeshError) -> String {
+    match error {
+        MeshError::Index {
+            vertex, vertices, ..
+        } => format!(
+            "a face names vertex {}, but there are {vertices}",
+            u64::from(*vertex) + 1
+        ),
+        _ => error.to_string(),
+    }
 }
 
 /// Reads a line, and the next too where a backslash joins them; gives the number of bytes.

@@ -9,21 +9,39 @@ use super::atomic::Fault;
 use super::{BLOCK, FRAME};
 use crate::TriangleMesh;
 
-/// Writes the header, all vertices and all triangles.
-pub(super) fn write(file: &mut File, mesh: &TriangleMesh, task: &Task) -> Result<(), Fault> {
+/// A number for each vertex.
+#[derive(Clone, Copy)]
+pub(super) struct Values<'a> {
+    /// The name of its property.
+    pub(super) name: &'a str,
+    pub(super) of_vertices: &'a [f64],
+}
+
+/// Writes the header, all vertices, with their values if there are any, and all triangles.
+pub(super) fn write(
+    file: &mut File,
+    mesh: &TriangleMesh,
+    values: Option<Values<'_>>,
+    task: &Task,
+) -> Result<(), Fault> {
+    let property = values.map(|values| format!("property float {}\n", values.name));
     let header = format!(
         "ply\nformat binary_little_endian 1.0\ncomment {FRAME}\ncomment made by Bonemesh\n\
-         element vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
+         element vertex {}\nproperty float x\nproperty float y\nproperty float z\n{}\
          element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
         mesh.vertices_mm().len(),
+        property.unwrap_or_default(),
         mesh.triangles().len(),
     );
     file.write_all(header.as_bytes())?;
     let mut bytes = Vec::new();
-    for block in mesh.vertices_mm().chunks(BLOCK) {
+    for (number, block) in mesh.vertices_mm().chunks(BLOCK).enumerate() {
         bytes.clear();
-        for value in block.as_flattened() {
-            bytes.extend_from_slice(&(*value as f32).to_le_bytes());
+        for (vertex, place_mm) in (number * BLOCK..).zip(block) {
+            let value = values.map(|values| values.of_vertices[vertex]);
+            for value in place_mm.iter().copied().chain(value) {
+                bytes.extend_from_slice(&(value as f32).to_le_bytes());
+            }
         }
         file.write_all(&bytes)?;
         task.check()?;

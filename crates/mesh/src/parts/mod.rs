@@ -9,16 +9,24 @@ mod label;
 
 use bonemesh_task::Task;
 
+use crate::distance::squared_distance;
+use crate::vector::Vector;
 use crate::{MeshError, TriangleMesh};
 use label::{Labels, Part};
+use rayon::prelude::*;
+
+/// A place that is further than this outside the box of a mesh belongs to none of its islands.
+const BESIDE_MM: f64 = 10.0;
 
 /// Which islands [`keep_islands`] keeps.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Islands {
     /// The one with the largest volume.
     Largest,
     /// All of at least this volume (mm3), their cavities counted in.
     AtLeastMm3(f64),
+    /// Those nearest to these places (mm): the bone that a place is in or on, or beside.
+    At(Vec<[f64; 3]>),
 }
 
 /// A part that is gone.
@@ -52,16 +60,17 @@ pub struct Kept {
 /// The result is the same for any number of threads.
 ///
 /// # Errors
-/// [`MeshError::Volume`] for a volume that is none, [`MeshError::Cancelled`].
-pub fn keep_islands(mesh: &TriangleMesh, keep: Islands, task: &Task) -> Result<Kept, MeshError> {
+/// [`MeshError::Volume`] for a volume that is none, [`MeshError::FarPlace`] for a place that is not
+/// near the mesh, [`MeshError::Cancelled`].
+pub fn keep_islands(mesh: &TriangleMesh, keep: &Islands, task: &Task) -> Result<Kept, MeshError> {
     if let Islands::AtLeastMm3(least) = keep {
-        MeshError::volume(least)?;
+        MeshError::volume(*least)?;
     }
     let parts = Parts::of(mesh, task)?;
     let is_kept: Vec<bool> = match keep {
         Islands::AtLeastMm3(least) => {
             let parts = parts.known.iter();
-            parts.map(|part| part.volume_mm3.abs() >= least).collect()
+            parts.map(|part| part.volume_mm3.abs() >= *least).collect()
         }
         Islands::Largest => {
             let islands = parts
@@ -75,6 +84,16 @@ pub fn keep_islands(mesh: &TriangleMesh, keep: Islands, task: &Task) -> Result<K
                 .max_by(|(_, a), (_, b)| a.volume_mm3.abs().total_cmp(&b.volume_mm3.abs()));
             let largest = largest.map(|(number, _)| number);
             (0..parts.known.len()).map(|n| Some(n) == largest).collect()
+        }
+        Islands::At(places_mm) => {
+            let mut is_kept = vec![false; parts.known.len()];
+            for &place_mm in places_mm {
+                task.check()?;
+                if let Some(part) = parts.island_at(place_mm)? {
+                    is_kept[part] = true;
+                }
+            }
+            is_kept
         }
     };
     let is_kept = parts
@@ -195,6 +214,41 @@ impl<'a> Parts<'a> {
             labels,
             known: parts,
         })
+    }
+
+    /// The island whose surface, or that of a cavity in it, is nearest to a place.
+    fn island_at(&self, place_mm: Vector) -> Result<Option<usize>, MeshError> {
+        let Some([low, high]) = self.mesh.bounds_mm() else {
+            return Ok(None);
+        };
+        let is_near = |axis: usize| {
+            let range = low[axis] - BESIDE_MM..=high[axis] + BESIDE_MM;
+            range.contains(&place_mm[axis])
+        };
+        if !(0..3).all(is_near) {
+            return Err(MeshError::FarPlace {
+                place_mm,
+                bounds_mm: [low, high],
+            });
+        }
+        let squared = |triangle: &[u32; 3]| {
+            let corners = self.mesh.corners_mm(*triangle);
+            squared_distance(place_mm, corners)
+        };
+        // Of equals the one with the lower number.
+        let nearest = (self.mesh.triangles().par_iter().map(squared))
+            .zip(&self.labels.of_triangles)
+            .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(b.1)));
+        Ok(
+            nearest.map(|(_, &number)| match self.known[number as usize] {
+                Part {
+                    is_cavity: true,
+                    parent: Some(parent),
+                    ..
+                } => parent as usize,
+                _ => number as usize,
+            }),
+        )
     }
 
     /// A part, what it lies in, and so on.

@@ -9,8 +9,19 @@ use crate::TriangleMesh;
 /// Triangles done between two looks at the cancel switch.
 const STRIDE: usize = 1 << 16;
 
-/// How many parts share no vertex with one another.
-pub(super) fn count(mesh: &TriangleMesh, task: &Task) -> Result<usize, Cancelled> {
+/// Parts that share no vertex with one another.
+pub(super) struct Components {
+    pub(super) count: usize,
+    /// Those whose volume is negative.
+    pub(super) inward: usize,
+}
+
+/// Counts the parts, `volumes` being what each triangle adds to the volume of its part.
+pub(super) fn count(
+    mesh: &TriangleMesh,
+    volumes: &[f64],
+    task: &Task,
+) -> Result<Components, Cancelled> {
     let mut sets = Sets::new(mesh.vertices_mm().len());
     let mut is_used = vec![false; mesh.vertices_mm().len()];
     let mut joins = 0;
@@ -24,5 +35,17 @@ pub(super) fn count(mesh: &TriangleMesh, task: &Task) -> Result<usize, Cancelled
         task.check()?;
     }
     // Every join of two sets leaves one part fewer than there were vertices.
-    Ok(is_used.iter().filter(|used| **used).count() - joins)
+    let count = is_used.iter().filter(|used| **used).count() - joins;
+    let mut of_parts = vec![0.0; mesh.vertices_mm().len()];
+    let triangles = mesh.triangles().chunks(STRIDE).zip(volumes.chunks(STRIDE));
+    for (triangles, volumes) in triangles {
+        for (triangle, volume) in triangles.iter().zip(volumes) {
+            of_parts[sets.lowest(triangle[0]) as usize] += volume;
+        }
+        task.check()?;
+    }
+    Ok(Components {
+        count,
+        inward: of_parts.iter().filter(|volume| **volume < 0.0).count(),
+    })
 }

@@ -52,6 +52,8 @@ pub struct Topology {
     pub degenerate_triangles: usize,
     /// Parts that share no vertex; parts that touch in one vertex are one.
     pub components: usize,
+    /// Those of them that face inward: the walls of cavities. 0 unless watertight.
+    pub cavities: usize,
     /// The surface is closed and bounds a volume: there are triangles, and each edge has as many
     /// running one way as the other. Closed bodies that touch along an edge are watertight but not
     /// manifold.
@@ -78,9 +80,10 @@ pub fn check_topology(mesh: &TriangleMesh, task: &Task) -> Result<Topology, Mesh
     let incidence = Incidence::of(mesh);
     let (counts, components) = rayon::join(
         || vertex::inspect(&incidence, task),
-        || components::count(mesh, task),
+        || components::count(mesh, &measures.sixfold_volumes, task),
     );
-    let counts = counts?;
+    let (counts, components) = (counts?, components?);
+    let watertight = counts.edges > 0 && counts.unbalanced_edges == 0;
     Ok(Topology {
         vertices: mesh.vertices_mm().len(),
         unused_vertices: mesh.vertices_mm().len() - counts.used_vertices,
@@ -90,8 +93,9 @@ pub fn check_topology(mesh: &TriangleMesh, task: &Task) -> Result<Topology, Mesh
         non_manifold_vertices: counts.non_manifold_vertices,
         inconsistent_edges: counts.inconsistent_edges,
         degenerate_triangles: measures.degenerate,
-        components: components?,
-        watertight: counts.edges > 0 && counts.unbalanced_edges == 0,
+        components: components.count,
+        cavities: if watertight { components.inward } else { 0 },
+        watertight,
         manifold: counts.is_manifold(),
         volume_mm3: measures.volume_mm3,
         area_mm2: measures.area_mm2,
@@ -103,6 +107,8 @@ pub fn check_topology(mesh: &TriangleMesh, task: &Task) -> Result<Topology, Mesh
 struct Measures {
     area_mm2: f64,
     volume_mm3: f64,
+    /// Six times what each triangle adds to the volume.
+    sixfold_volumes: Vec<f64>,
     degenerate: usize,
 }
 
@@ -115,6 +121,7 @@ fn measure(mesh: &TriangleMesh, task: &Task) -> Result<Measures, MeshError> {
         return Ok(Measures {
             area_mm2: 0.0,
             volume_mm3: 0.0,
+            sixfold_volumes: Vec::new(),
             degenerate: 0,
         });
     };
@@ -141,6 +148,7 @@ fn measure(mesh: &TriangleMesh, task: &Task) -> Result<Measures, MeshError> {
     Ok(Measures {
         area_mm2: chunked_sum(&doubled_areas) / 2.0,
         volume_mm3: chunked_sum(&sixfold_volumes) / 6.0,
+        sixfold_volumes,
         degenerate,
     })
 }

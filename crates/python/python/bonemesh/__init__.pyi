@@ -60,7 +60,16 @@ _Progress: TypeAlias = Callable[[str, float], object]
 _Crop: TypeAlias = str | Sequence[tuple[SupportsIndex, SupportsIndex]]
 _Sampler: TypeAlias = Literal["uniform", "random", "thesis-uniform"]
 # A threshold in place of a number of Hounsfield units; 350 where none is given.
-_Threshold: TypeAlias = Literal["auto", "skull", "cortical", "thin-bone", "teeth"]
+_Threshold: TypeAlias = Literal[
+    "auto",
+    "edges",
+    "multi-otsu",
+    "otsu",
+    "skull",
+    "cortical",
+    "thin-bone",
+    "teeth",
+]
 _Orientation: TypeAlias = Literal[
     "axial",
     "reversed",
@@ -357,6 +366,7 @@ def render(
     path_or_volume: _Path | Volume,
     *,
     threshold_hu: float | _Threshold = ...,
+    local_leeway_hu: float | None = None,
     method: Literal[
         "alpha",
         "isosurface",
@@ -382,7 +392,7 @@ def render(
     keep_table: bool = False,
     damp_metal: bool = False,
     holes: Literal["all"] | float | None = None,
-    islands: Literal["largest"] | float | None = None,
+    islands: Literal["largest"] | float | Sequence[tuple[float, float, float]] | None = None,
     cavities: Literal["all"] | float | None = None,
     smooth_mm: float | None = None,
     triangles: SupportsIndex | None = None,
@@ -423,7 +433,7 @@ def fill_holes(
 def keep_islands(
     mesh: Mesh,
     *,
-    islands: Literal["largest"] | float,
+    islands: Literal["largest"] | float | Sequence[tuple[float, float, float]],
     progress: _Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Mesh: ...
