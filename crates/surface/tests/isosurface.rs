@@ -130,6 +130,34 @@ fn an_edge_may_lie_beyond_the_border() {
     surface(&common::of_voxels(voxels, map), at(350.0, true));
 }
 
+#[test]
+fn each_case_of_a_cube_is_sound_wherever_its_edges_are_cut() {
+    // Cuts next to either end, in the middle and between.
+    let above = [351, 352, 400, 1000, 30_000];
+    let below = [350, 349, 300, -300, -30_000];
+    let map = Affine::from_axes([0.4, 0.0, 0.0], [0.0, 0.4, 0.0], [0.0, 0.1, 1.3], [5.0; 3]);
+    for inside in 1..=255_usize {
+        for draw in 0..20_usize {
+            let voxels = Array3::from_shape_fn((2, 2, 2), |(k, j, i)| {
+                let corner = i + 2 * j + 4 * k;
+                let of = if inside >> corner & 1 == 1 {
+                    above
+                } else {
+                    below
+                };
+                // Another mixture for each draw; the first five are the same at all corners.
+                let level = if draw < 5 {
+                    draw
+                } else {
+                    (draw * (3 * corner + 7) + inside) / 4
+                };
+                of[level % 5]
+            });
+            surface(&common::of_voxels(voxels, map.clone()), at(350.0, false));
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 

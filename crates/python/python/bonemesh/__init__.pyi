@@ -392,7 +392,10 @@ def render(
     keep_table: bool = False,
     damp_metal: bool = False,
     holes: Literal["all"] | float | None = None,
-    islands: Literal["largest"] | float | Sequence[tuple[float, float, float]] | None = None,
+    islands: Literal["largest"]
+    | float
+    | Sequence[tuple[float, float, float]]
+    | None = None,
     cavities: Literal["all"] | float | None = None,
     smooth_mm: float | None = None,
     triangles: SupportsIndex | None = None,

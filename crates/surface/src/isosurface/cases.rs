@@ -11,7 +11,8 @@
 //! Therefore the whole surface is a closed 2-manifold: a segment belongs to the two cubes of its
 //! face, an inner edge to one cube and two of its triangles, and around a vertex, which lies on
 //! an edge of four cubes, these have one fan each, joined in a ring. It passes through itself
-//! nowhere, because each cube's triangles keep to themselves (tested with exact predicates).
+//! nowhere, wherever on their edges its vertices lie, because each cube's triangles keep to themselves
+//! (tested with exact predicates for all cases).
 //!
 //! After W. E. Lorensen, H. E. Cline, *Marching cubes*, 1987, and C. Montani, R. Scateni,
 //! R. Scopigno, *A modified look-up table for implicit disambiguation of marching cubes*, 1994;

@@ -1,7 +1,8 @@
 //! Smooths the surface by sliding its vertices along the edges between voxels that they lie on.
 //!
-//! What slides along its edge cannot leave the cubes beside it, so the surface stays as closed and as
-//! free of self-intersections as it was, with nothing to check.
+//! What slides along its edge cannot leave the cubes beside it, and wherever on their edges vertices
+//! lie, the triangles of a cube keep to themselves (`cases` says why): so the surface stays as closed
+//! and as free of self-intersections as it was, with nothing to check.
 //!
 //! 1. `Neighbours::of`: who is joined to whom.
 //! 2. `filtered`: where the vertices would go if they were free, in pairs of steps that do not shrink.
