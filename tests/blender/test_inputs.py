@@ -58,8 +58,8 @@ def test_defaults_ask_for_everything_there_is(tmp_path: Path) -> None:
 
 def test_the_table_is_left_out_unless_it_is_wanted(tmp_path: Path) -> None:
     for leave_out in (True, False):
-        inputs = RenderInputs.read(fields(tmp_path, leave_out_table=leave_out))
-        assert inputs.options["keep_table"] is not leave_out
+        voxels = fields(tmp_path, leave_out_table=leave_out, method="isosurface")
+        assert RenderInputs.read(voxels).options["keep_table"] is not leave_out
         # Of edge points it is never left out, and the library refuses to be asked.
         points = fields(tmp_path, leave_out_table=leave_out, method="alpha")
         assert "keep_table" not in RenderInputs.read(points).options
