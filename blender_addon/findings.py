@@ -48,7 +48,7 @@ def after_care_lines(report: Report) -> list[str]:
     wanted = report.get("missed_triangles")
     if wanted is not None:
         lines.append(
-            f"Not as few as {wanted:,}: the surface would lose its shape or pass through itself"
+            f"Not as few as {wanted:,}: no more could go without bending the surface too much"
         )
     return lines or ["Nothing had to be removed"]
 

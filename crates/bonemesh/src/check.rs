@@ -3,8 +3,8 @@
 use std::num::NonZeroUsize;
 
 use bonemesh_mesh::{
-    Intersection, Intersections, Topology, TriangleMesh, TriangleTree, WallThickness,
-    check_topology, find_intersections,
+    Intersection, Intersections, Nesting, Topology, TriangleMesh, TriangleTree, WallThickness,
+    check_nesting, check_topology, find_intersections,
 };
 use bonemesh_task::{Task, pool};
 use serde::Serialize;
@@ -15,7 +15,7 @@ use crate::report::CheckReport;
 /// Self-intersections that a report names one by one.
 const MOST_NAMED: usize = 20;
 
-/// Part of the vertices that may have a thinner wall than [`PrintCheck::wall_5_percent_mm`] says.
+/// Part of the surface that may have a thinner wall than [`PrintCheck::wall_5_percent_mm`] says.
 const THIN_PART: f64 = 0.05;
 
 /// What can be said of a mesh as a body to be printed.
@@ -41,7 +41,8 @@ pub struct PrintCheck {
     pub thinnest_wall_mm: Option<f64>,
     /// Where the wall is thinnest.
     pub thinnest_wall_place_mm: Option<[f64; 3]>,
-    /// At one vertex in twenty the wall is thinner than this; `None` if the mesh bounds no volume.
+    /// Under a twentieth of the surface the wall is thinner than this; `None` if the mesh bounds no
+    /// volume.
     pub wall_5_percent_mm: Option<f64>,
     /// The verdict: closed, 2-manifold, outward, free of self-intersections and of triangles without
     /// area. How thin a wall may be depends on the printer and is left to the reader.
@@ -118,22 +119,28 @@ pub fn check_walls(
         } else {
             WallThickness::default()
         };
-        let thinnest = walls
-            .thinnest_vertex
-            .map(|v| mesh.vertices_mm()[v as usize]);
-        let reasons = reasons(&topology, &found);
+        // Where triangles pass through one another, nothing lies in anything.
+        let nesting = if topology.watertight && found.count == 0 {
+            check_nesting(&mesh, task)?
+        } else {
+            Nesting::default()
+        };
+        let reasons = reasons(&topology, &found, nesting);
         let report = PrintCheck {
             inconsistent_edges: topology.inconsistent_edges,
             outward: topology.volume_mm3 > 0.0,
             self_intersections: found.count,
             intersecting_triangles: found.triangles,
             intersections: found.pairs.into_iter().map(Place::from).collect(),
-            thinnest_wall_mm: walls.thinnest_mm(),
-            thinnest_wall_place_mm: thinnest,
-            wall_5_percent_mm: low_part(walls.at_vertex_mm.clone()),
+            thinnest_wall_mm: walls.thinnest.map(|thinnest| thinnest.thickness_mm),
+            thinnest_wall_place_mm: walls.thinnest.map(|thinnest| thinnest.place_mm),
+            wall_5_percent_mm: low_part(&mesh, &walls.at_triangle_mm),
             printable: reasons.is_empty(),
             reasons,
-            topology: topology.into(),
+            topology: CheckReport {
+                cavities: nesting.cavities,
+                ..topology.into()
+            },
         };
         Ok(Checked {
             report,
@@ -158,17 +165,34 @@ pub fn wall_thickness(mesh: &TriangleMesh, task: &Task) -> Result<Vec<f64>, Erro
     })
 }
 
-/// The value that [`THIN_PART`] of the finite values are below.
-fn low_part(mut values: Vec<f64>) -> Option<f64> {
-    values.retain(|value| value.is_finite());
-    let place = (values.len() as f64 * THIN_PART) as usize;
-    let (_, value, _) =
-        (place < values.len()).then(|| values.select_nth_unstable_by(place, f64::total_cmp))?;
-    Some(*value)
+/// The thickness that triangles with [`THIN_PART`] of the area of all have less than, of those with
+/// something opposite.
+fn low_part(mesh: &TriangleMesh, at_triangle_mm: &[f64]) -> Option<f64> {
+    let triangles = mesh.triangles().iter().zip(at_triangle_mm);
+    let finite = triangles.filter(|(_, thickness)| thickness.is_finite());
+    let mut by_thickness: Vec<(f64, f64)> = finite
+        .map(|(triangle, thickness)| (*thickness, area_mm2(mesh.corners_mm(*triangle))))
+        .collect();
+    by_thickness.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let most = THIN_PART * by_thickness.iter().map(|(_, area)| area).sum::<f64>();
+    let mut area = 0.0;
+    let reaches = |(_, of_triangle): &&(f64, f64)| {
+        area += of_triangle;
+        area >= most
+    };
+    let found = by_thickness.iter().find(reaches);
+    found.map(|(thickness, _)| *thickness)
+}
+
+fn area_mm2([a, b, c]: [[f64; 3]; 3]) -> f64 {
+    let side = |to: [f64; 3]| [0, 1, 2].map(|axis| to[axis] - a[axis]);
+    let ([ux, uy, uz], [vx, vy, vz]) = (side(b), side(c));
+    let normal = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
+    0.5 * normal.iter().map(|n| n * n).sum::<f64>().sqrt()
 }
 
 /// What a printer's software would stumble over, each with its remedy.
-fn reasons(topology: &Topology, found: &Intersections) -> Vec<String> {
+fn reasons(topology: &Topology, found: &Intersections, nesting: Nesting) -> Vec<String> {
     let mut reasons = Vec::new();
     let mut add = |count: usize, one: &str, many: &str, remedy: &str| match count {
         0 => {}
@@ -210,6 +234,20 @@ fn reasons(topology: &Topology, found: &Intersections) -> Vec<String> {
         "surface that is inside out",
         "",
         "turn the triangles (in Blender: Mesh > Normals > Recalculate Outside)",
+    );
+    if topology.volume_mm3 > 0.0 {
+        add(
+            nesting.inside_out,
+            "part that is inside out",
+            "parts that are inside out",
+            "turn their triangles (in Blender: Mesh > Normals > Recalculate Outside)",
+        );
+    }
+    add(
+        nesting.doubled,
+        "part that lies inside of another",
+        "parts that lie inside of others",
+        "take them away, or turn them if they are cavities (in Blender: select one with L, Mesh > Normals > Flip)",
     );
     add(
         found.count,
@@ -288,6 +326,52 @@ mod tests {
         assert!(check.intersections.iter().all(|place| {
             place.triangles[0] < 4 && place.triangles[1] >= 4 && place.place_mm[0] >= 0.75
         }));
+    }
+
+    #[test]
+    fn parts_that_lie_wrong_in_one_another_are_named() {
+        let (outer, sides) = tetrahedron(0.0);
+        let scaled = |size: f64, x: f64| {
+            outer
+                .iter()
+                .map(move |v| v.map(|c| 0.2 + size * c))
+                .map(move |[a, b, c]| [a + x, b, c])
+        };
+        let inward: Vec<[u32; 3]> = sides.iter().map(|[a, b, c]| [*a, *c, *b]).collect();
+        let with = |size: f64, x: f64, triangles: &[[u32; 3]]| {
+            let vertices = outer.iter().copied().chain(scaled(size, x)).collect();
+            let more = triangles.iter().map(|t| t.map(|v| v + 4));
+            checked(vertices, sides.iter().copied().chain(more).collect())
+        };
+        let hollow = with(0.3, 0.0, &inward);
+        assert!(hollow.printable && hollow.topology.cavities == 1);
+        assert!(only_reason(&with(0.3, 0.0, &sides)).contains("lies inside of another"));
+        let beside = with(0.3, 9.0, &inward);
+        assert!(only_reason(&beside).contains("inside out"));
+        assert_eq!(beside.topology.cavities, 0);
+    }
+
+    #[test]
+    fn a_twentieth_is_one_of_the_surface_not_of_the_vertices() {
+        // A plate of two triangles a side is mostly thin, whatever its many narrow sides are.
+        let corners = |z: f64| {
+            [
+                [0.0, 0.0, z],
+                [40.0, 0.0, z],
+                [40.0, 40.0, z],
+                [0.0, 40.0, z],
+            ]
+        };
+        let vertices = [corners(0.0), corners(1.0)].concat();
+        let mut triangles = vec![[0, 2, 1], [0, 3, 2], [4, 5, 6], [4, 6, 7]];
+        for side in 0..4 {
+            let next = (side + 1) % 4;
+            triangles.extend([[side, next, next + 4], [side, next + 4, side + 4]]);
+        }
+        let plate = checked(vertices, triangles);
+        assert!(plate.printable, "{:?}", plate.reasons);
+        assert!((plate.thinnest_wall_mm.unwrap() - 1.0).abs() < 1e-9);
+        assert!((plate.wall_5_percent_mm.unwrap() - 1.0).abs() < 1e-9);
     }
 
     #[test]

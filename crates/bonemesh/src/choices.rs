@@ -21,36 +21,28 @@ pub(crate) fn refuse_unused(settings: &Settings) -> Result<(), Error> {
     let usual = Settings::default();
     let has_alpha = settings.alpha_mm.is_some() || settings.alpha_rule != AlphaRule::default();
     let choices: [(bool, &str, &[Method]); 8] = [
-        (
-            settings.sampling.is_some(),
-            "a sample of the points",
-            &OF_POINTS,
-        ),
-        (
-            settings.canny != usual.canny,
-            "Canny's sigma or thresholds",
-            &OF_POINTS,
-        ),
-        (has_alpha, "alpha", &[Method::Alpha]),
+        (settings.sampling.is_some(), "`sample`", &OF_POINTS),
+        (settings.canny != usual.canny, "`sigma`", &OF_POINTS),
+        (has_alpha, "`alpha`", &[Method::Alpha]),
         (
             settings.radii_mm.is_some(),
-            "a list of radii",
+            "`radii`",
             &[Method::BallPivoting],
         ),
-        (settings.depth != usual.depth, "depth", &[Method::Poisson]),
+        (settings.depth != usual.depth, "`depth`", &[Method::Poisson]),
         (
             settings.scale.to_bits() != usual.scale.to_bits(),
-            "scale",
+            "`scale`",
             &[Method::Poisson],
         ),
         (
             settings.true_edges != usual.true_edges,
-            "a surface at the threshold instead of the true edges",
+            "`at-threshold` (true_edges=False)",
             &OF_VOXELS,
         ),
         (
             settings.leave_out_table != usual.leave_out_table,
-            "keeping the scanner's table",
+            "`keep-table`",
             &OF_VOXELS,
         ),
     ];

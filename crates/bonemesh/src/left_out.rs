@@ -5,7 +5,8 @@ use bonemesh_task::Task;
 use bonemesh_volume::Volume;
 
 use crate::report::{LeftOut, LeftOutIslands};
-use crate::table::are_table;
+use crate::table::judge;
+use crate::table_pieces::{are_pieces, may_break};
 use crate::{Error, Settings};
 
 /// A loose speck of less than this is noise, or too small to print and to plan with; the smallest
@@ -15,10 +16,12 @@ const SPECK_MM3: f64 = 1.0;
 /// In scans of small things a speck is as many voxels.
 const SPECK_VOXELS: f64 = 8.0;
 
-/// The mesh without table and specks, as far as `settings` leave them out.
+/// The mesh of `volume` without table and specks, as far as `settings` leave them out; `whole`: the scan
+/// before it was cropped.
 pub(crate) fn leave_out(
     mesh: &TriangleMesh,
     volume: &Volume,
+    whole: &Volume,
     settings: &Settings,
     task: &Task,
 ) -> Result<(TriangleMesh, LeftOut), Error> {
@@ -31,7 +34,14 @@ pub(crate) fn leave_out(
     let are_taken = |islands: &[Island<'_>]| -> Result<Vec<bool>, Error> {
         let specks = are_specks(islands, least_mm3);
         let table = if settings.leave_out_table {
-            are_table(islands, volume, task)?
+            are_table(
+                islands,
+                &specks,
+                volume,
+                whole,
+                settings.threshold.hu(),
+                task,
+            )?
         } else {
             vec![false; islands.len()]
         };
@@ -46,6 +56,29 @@ pub(crate) fn leave_out(
     };
     let kept = take_islands(mesh, are_taken, task)?;
     Ok((kept.mesh, left_out))
+}
+
+/// Which islands are table, or pieces of one.
+fn are_table(
+    islands: &[Island<'_>],
+    specks: &[bool],
+    volume: &Volume,
+    whole: &Volume,
+    threshold_hu: f64,
+    task: &Task,
+) -> Result<Vec<bool>, Error> {
+    let [slices, ..] = volume.geometry().shape();
+    let stack_mm = volume.geometry().spacing_mm()[2] * slices as f64;
+    let verdict = judge(islands, whole, stack_mm, task)?;
+    let is_found = verdict.are_table.contains(&true);
+    let is_doubtful = (verdict.are_bare.iter().zip(specks)).any(|(bare, speck)| *bare && !speck);
+    if is_found || !is_doubtful || !may_break(threshold_hu) {
+        return Ok(verdict.are_table);
+    }
+    let pieces = are_pieces(islands, volume, whole, stack_mm, task)?;
+    // The bone itself may be as bare as a table.
+    let bare = pieces.into_iter().zip(&verdict.are_bare);
+    Ok(bare.map(|(piece, bare)| piece && *bare).collect())
 }
 
 /// Islands of less than this volume are specks.

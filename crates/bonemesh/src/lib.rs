@@ -48,6 +48,7 @@ mod report;
 mod settings;
 mod source;
 mod table;
+mod table_pieces;
 mod thresholds;
 
 pub use after_care::{AfterCare, AfterCareReport, Cavities, Holes, LeftHole, MOST_NAMED, care_for};

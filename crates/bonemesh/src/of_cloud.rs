@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use bonemesh_cloud::{PointCloud, mean_neighbour_distance};
+use bonemesh_mesh::TriangleMesh;
 use bonemesh_surface::{
     AlphaSurface, BallPivotingSettings, PoissonSettings, alpha_boundary, ball_pivoting,
     boundary_surface, planar_surface, poisson, tetrahedra_surface, volume_matched_boundary,
@@ -19,6 +20,9 @@ const ALPHA_NEIGHBOURS: usize = 100;
 
 /// A volume is met where it is off by less than this part.
 const VOLUME_MET: f64 = 0.01;
+
+/// A surface that reaches further beyond its points than this part of their extent bulges.
+const BULGE: f64 = 0.05;
 
 /// Makes the surface of `cloud`; `bone_mm3` is the volume of the voxels that it comes from.
 pub(crate) fn cloud_to_mesh(
@@ -66,7 +70,28 @@ pub(crate) fn cloud_to_mesh(
     report.points = Some(cloud.len());
     report.tetrahedra = tetrahedra;
     report.radii_mm = radii_mm;
+    report.warnings.extend(bulge(cloud, &mesh));
     Ok(Rendered { mesh, report })
+}
+
+/// What is to be said of a surface that reaches far beyond its points, as Poisson's can.
+fn bulge(cloud: &PointCloud, mesh: &TriangleMesh) -> Option<String> {
+    let [low, high] = mesh.bounds_mm()?;
+    let points = cloud.points_mm();
+    let beyond = |axis: usize| {
+        let along = points.iter().map(|point| point[axis]);
+        let first = along.clone().fold(f64::INFINITY, f64::min);
+        let last = along.fold(f64::NEG_INFINITY, f64::max);
+        ((first - low[axis]).max(high[axis] - last), last - first)
+    };
+    let (beyond_mm, extent_mm) = (0..3)
+        .map(beyond)
+        .fold((0.0, 0.0), |(most, size), of_axis| {
+            (of_axis.0.max(most), of_axis.1.max(size))
+        });
+    (beyond_mm > BULGE * extent_mm).then(|| {
+        format!("the surface bulges {beyond_mm:.0} mm beyond its points: it is no body to be used")
+    })
 }
 
 /// The published method.

@@ -84,7 +84,6 @@ pub fn point_cloud(
         };
         let volume = &*damped;
         let settings = &chosen(volume, settings, task)?.of(settings);
-        let volume = &*leveled(volume, settings, task)?;
         let found = volume_to_cloud(volume, settings, frame, &mut Seconds::default(), task)?;
         Ok(found.0)
     })
@@ -112,8 +111,6 @@ fn volume_to_mesh(volume: &Volume, settings: &Settings, task: &Task) -> Result<R
     let volume = &*volume;
     let chosen = chosen(volume, settings, task)?;
     let settings = &chosen.of(settings);
-    let leveled = leveled(volume, settings, task)?;
-    let volume = &*leveled;
     let threshold_s = lap(&mut clock);
     let mut rendered = if settings.method.needs_voxels() {
         seconds.edges += threshold_s;
@@ -140,6 +137,7 @@ fn volume_to_closed_surface(
     task: &Task,
 ) -> Result<Rendered, Error> {
     let mut clock = Instant::now();
+    let whole = volume;
     let cropped = settings
         .crop
         .as_ref()
@@ -149,11 +147,13 @@ fn volume_to_closed_surface(
     // Cubes are filled in one way of several, and slices are not columns: how the voxels were
     // stored must not show.
     let volume = volume.in_patient_order(task)?;
+    let leveled = leveled(&volume, settings, task)?;
     let placing = IsosurfaceSettings {
         threshold_hu: settings.threshold.hu(),
+        leveled: leveled.as_ref(),
         true_edges: settings.true_edges,
     };
-    refuse_all_bone(&volume, placing.threshold_hu)?;
+    refuse_all_bone(leveled.as_ref().unwrap_or(&volume), placing.threshold_hu)?;
     let in_words = |error| in_words(error, &volume);
     let (mesh, labelled) = if settings.method == Method::Labelled {
         let surface = labelled_surface(&volume, placing, task).map_err(in_words)?;
@@ -163,7 +163,13 @@ fn volume_to_closed_surface(
         let mesh = isosurface(&volume, placing, task).map_err(in_words)?;
         (mesh, None)
     };
-    let (mesh, left_out) = leave_out(&mesh, &volume, settings, task)?;
+    drop(leveled);
+    let (mesh, left_out) = if settings.crop.is_some() {
+        let whole = whole.in_patient_order(task)?;
+        leave_out(&mesh, &volume, &whole, settings, task)?
+    } else {
+        leave_out(&mesh, &volume, &volume, settings, task)?
+    };
     let topology = check(&mesh, task)?;
     seconds.surface = lap(&mut clock);
     seconds.total = seconds.edges + seconds.surface;
@@ -228,7 +234,10 @@ fn volume_to_cloud(
         Frame::Patient => volume.in_patient_order(task)?,
         Frame::Image => Cow::Borrowed(volume),
     };
-    let mask = threshold(&volume, settings.threshold, task)?;
+    let leveled = leveled(&volume, settings, task)?;
+    let compared = leveled.as_ref().unwrap_or(&volume);
+    let mask = threshold(compared, settings.threshold, task)?;
+    drop(leveled);
     drop(volume);
     drop(cropped);
     let bone_mm3 = bone_mm3(&mask);

@@ -71,6 +71,8 @@ pub struct RenderReport {
     pub threshold_hu: Option<f64>,
     /// How the threshold was found, or which preset it is; `None` for any other number.
     pub threshold_reason: Option<String>,
+    /// How far the threshold may lie elsewhere around a voxel; `None` if it is the same everywhere.
+    pub local_leeway_hu: Option<f64>,
     /// Canny's smoothing, pixels.
     pub sigma: f64,
     /// `SeriesInstanceUID`, where the volume came from files.
@@ -128,6 +130,7 @@ impl RenderReport {
             method: settings.method.name(),
             threshold_hu: None,
             threshold_reason: None,
+            local_leeway_hu: settings.local_leeway_hu,
             sigma: settings.canny.sigma(),
             series_uid: None,
             spacing_mm: None,

@@ -5,7 +5,9 @@ use std::str::FromStr;
 
 use bonemesh_cloud::{Percent, Sampler};
 use bonemesh_dicom::SeriesChoice;
-use bonemesh_segment::{CannySettings, HuThreshold, ThresholdChoice, ThresholdFinder};
+use bonemesh_segment::{
+    CannySettings, HuThreshold, ThresholdChoice, ThresholdFinder, ThresholdPreset,
+};
 use bonemesh_surface::PoissonSettings;
 use bonemesh_volume::CropBox;
 
@@ -118,6 +120,8 @@ pub struct Sampling {
 pub struct Settings {
     /// Bone is strictly above this.
     pub threshold: HuThreshold,
+    /// The published threshold that `threshold` is, where it was chosen by its name.
+    pub preset: Option<ThresholdPreset>,
     /// How the threshold is found in the volume ([`choose_threshold`](crate::choose_threshold));
     /// `None` takes `threshold`.
     pub find_threshold: Option<ThresholdFinder>,
@@ -161,9 +165,6 @@ pub struct Settings {
     pub threads: Option<NonZeroUsize>,
 }
 
-/// The threshold that the published method used for skulls (Tilotta 2009), in HU.
-const SKULL_HU: f64 = 350.0;
-
 impl Settings {
     /// These settings with a threshold as it was chosen.
     #[must_use]
@@ -171,6 +172,13 @@ impl Settings {
         match choice {
             ThresholdChoice::Given(threshold) => Self {
                 threshold,
+                preset: None,
+                find_threshold: None,
+                ..self
+            },
+            ThresholdChoice::Preset(preset) => Self {
+                threshold: preset.threshold(),
+                preset: Some(preset),
                 find_threshold: None,
                 ..self
             },
@@ -185,7 +193,8 @@ impl Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            threshold: HuThreshold::new(SKULL_HU).expect("350 is finite: anything else is a bug"),
+            threshold: ThresholdPreset::Skull.threshold(),
+            preset: None,
             find_threshold: None,
             local_leeway_hu: None,
             canny: CannySettings::default(),

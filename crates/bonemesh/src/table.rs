@@ -39,15 +39,30 @@ const BONE_BESIDE_TABLE: f64 = 0.1;
 const SAME: f64 = 0.8;
 const ALONG: f64 = 0.9;
 
+/// What islands are, one after another.
+pub(crate) struct Verdict {
+    /// The scanner's table and headrest.
+    pub(crate) are_table: Vec<bool>,
+    /// Air of the outside is beside them.
+    pub(crate) are_bare: Vec<bool>,
+}
+
 /// Which islands are the scanner's table and headrest.
-pub(crate) fn are_table(
+///
+/// `volume`: the whole scan, in patient order, since a crop box is no border of the patient;
+/// `stack_mm`: how high the part of it is that the islands come from.
+pub(crate) fn judge(
     islands: &[Island<'_>],
     volume: &Volume,
+    stack_mm: f64,
     task: &Task,
-) -> Result<Vec<bool>, Error> {
+) -> Result<Verdict, Error> {
     let voxel_from_patient = volume.geometry().patient_from_voxel().inverse();
     let (Some(voxel_from_patient), true) = (voxel_from_patient, islands.len() > 1) else {
-        return Ok(vec![false; islands.len()]);
+        return Ok(Verdict {
+            are_table: vec![false; islands.len()],
+            are_bare: vec![false; islands.len()],
+        });
     };
     let outside = outside_air(volume, task)?;
     let scan = Scan {
@@ -55,9 +70,13 @@ pub(crate) fn are_table(
         outside: &outside,
         voxel_from_patient,
         spacing_mm: volume.geometry().spacing_mm(),
+        stack_mm,
     };
     let looks: Vec<Look> = islands.par_iter().map(|i| scan.look(i)).collect();
-    Ok(are_foreign(&looks))
+    Ok(Verdict {
+        are_table: are_foreign(&looks),
+        are_bare: looks.iter().map(Look::is_bare).collect(),
+    })
 }
 
 /// What an island looks like.
@@ -97,6 +116,7 @@ struct Scan<'a> {
     outside: &'a Mask,
     voxel_from_patient: Affine,
     spacing_mm: [f64; 3],
+    stack_mm: f64,
 }
 
 impl Scan<'_> {
@@ -157,9 +177,8 @@ impl Scan<'_> {
         let (Some(first), Some(last)) = (slabs().min(), slabs().max()) else {
             return false;
         };
-        let [slices, ..] = self.outside.geometry.shape();
-        let stack_mm = self.spacing_mm[2] * slices as f64;
-        if last - first < SLABS_APART || f64::from(last - first + 1) * SLAB_MM < ALONG * stack_mm {
+        let long_mm = f64::from(last - first + 1) * SLAB_MM;
+        if last - first < SLABS_APART || long_mm < ALONG * self.stack_mm {
             return false;
         }
         let comes_again = |[x, y, slab]: [i32; 3]| {

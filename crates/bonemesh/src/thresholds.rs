@@ -1,12 +1,11 @@
 //! The histogram of a volume with suggested thresholds, and the threshold of a rendering.
 
-use std::borrow::Cow;
 use std::num::{NonZeroU16, NonZeroUsize};
 use std::path::Path;
 
 use bonemesh_dicom::SeriesChoice;
 use bonemesh_segment::{
-    HuThreshold, LocalThreshold, Suggestion, ThresholdFinder, ThresholdPreset, level_to_threshold,
+    HuThreshold, LocalThreshold, Suggestion, ThresholdFinder, level_to_threshold,
     suggest_thresholds,
 };
 use bonemesh_task::{Task, pool};
@@ -180,16 +179,16 @@ fn above(histogram: &Histogram, threshold: HuThreshold) -> u64 {
 
 /// The `volume` moved so that the global threshold of `settings` does what the local one would, if they
 /// ask for it.
-pub(crate) fn leveled<'a>(
-    volume: &'a Volume,
+pub(crate) fn leveled(
+    volume: &Volume,
     settings: &Settings,
     task: &Task,
-) -> Result<Cow<'a, Volume>, Error> {
+) -> Result<Option<Volume>, Error> {
     let Some(leeway_hu) = settings.local_leeway_hu else {
-        return Ok(Cow::Borrowed(volume));
+        return Ok(None);
     };
     let local = LocalThreshold::around(settings.threshold).with_leeway_hu(leeway_hu)?;
-    Ok(Cow::Owned(level_to_threshold(volume, local, task)?))
+    Ok(Some(level_to_threshold(volume, local, task)?))
 }
 
 /// The threshold that a rendering of a volume takes, and why.
@@ -232,10 +231,11 @@ pub(crate) fn chosen(
     task: &Task,
 ) -> Result<ChosenThreshold, Error> {
     let Some(finder) = settings.find_threshold else {
-        let preset = ThresholdPreset::of(settings.threshold);
         return Ok(ChosenThreshold {
             threshold: settings.threshold,
-            reason: preset.map(|p| format!("{p}: {} ({})", p.description(), p.source())),
+            reason: settings
+                .preset
+                .map(|p| format!("{p}: {} ({})", p.description(), p.source())),
         });
     };
     let cropped = settings.crop.as_ref().map(|crop| volume.cropped(crop));

@@ -172,7 +172,7 @@ fn a_local_threshold_keeps_what_the_global_one_loses() {
     assert!(volume_mm3(&["--local", "400"]) > 1.05 * global);
     let render = ["render", text(&tube), "-o", "x.stl", "--local", "-3"];
     let refused = bonemesh(&render);
-    assert_eq!(refused.status.code(), Some(1));
+    assert_eq!(refused.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&refused.stderr).contains("leeway of -3 HU"));
 }
 

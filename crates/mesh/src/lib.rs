@@ -72,8 +72,11 @@ pub use io::{
     MeshFormat, check_target, check_values_target, read_mesh, write_mesh, write_with_values,
 };
 pub use mesh::TriangleMesh;
-pub use parts::{Island, Islands, Kept, RemovedPart, fill_cavities, keep_islands, take_islands};
+pub use parts::{
+    Island, Islands, Kept, Nesting, RemovedPart, check_nesting, fill_cavities, keep_islands,
+    take_islands,
+};
 pub use smooth::{Smoothed, smooth};
-pub use thickness::{WallThickness, wall_thickness};
-pub use topology::{Topology, check_topology};
-pub use tree::TriangleTree;
+pub use thickness::{Thinnest, WallThickness, wall_thickness};
+pub use topology::{Sets, Topology, check_topology};
+pub use tree::{Nearest, TriangleTree};

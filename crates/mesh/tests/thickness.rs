@@ -15,6 +15,10 @@ fn measure(mesh: &TriangleMesh) -> WallThickness {
     wall_thickness(&TriangleTree::new(mesh, &task).unwrap(), &task).unwrap()
 }
 
+fn thinnest_mm(measured: &WallThickness) -> f64 {
+    measured.thinnest.unwrap().thickness_mm
+}
+
 /// The same surface seen from the other side.
 fn turned(from: &TriangleMesh) -> TriangleMesh {
     let triangles = from.triangles().iter().map(|[a, b, c]| [*a, *c, *b]);
@@ -54,13 +58,24 @@ fn a_plate_is_as_thick_as_it_is() {
         count += 1;
     }
     assert!(count > 100);
-    assert!((measured.thinnest_mm().unwrap() - 2.0).abs() < 1e-9);
+    assert!((thinnest_mm(&measured) - 2.0).abs() < 1e-9);
+}
+
+#[test]
+fn few_triangles_are_enough_for_the_thickness_of_a_plate() {
+    let plate = measure(&box_mesh([0.0; 3], [50.0, 50.0, 1.0]));
+    assert!((thinnest_mm(&plate) - 1.0).abs() < 1e-12);
+    let sides = plate
+        .at_triangle_mm
+        .iter()
+        .filter(|t| (**t - 50.0).abs() < 1e-12);
+    assert_eq!(sides.count(), 8);
 }
 
 #[test]
 fn a_block_has_no_thin_walls_along_its_edges() {
     let measured = measure(&fine_box([0.0; 3], [20.0; 3], 5));
-    assert!(measured.thinnest_mm().unwrap() > 19.9);
+    assert!(thinnest_mm(&measured) > 19.9);
 }
 
 #[test]
@@ -69,9 +84,8 @@ fn a_step_in_a_plate_is_found() {
     let thin = fine_box([50.0, 0.0, 0.0], [80.0, 30.0, 1.0], 3);
     let both = together(&fine_box([0.0; 3], [40.0, 30.0, 3.0], 3), &thin);
     let measured = measure(&both);
-    let vertex = measured.thinnest_vertex.unwrap();
-    assert!(both.vertices_mm()[vertex as usize][0] >= 50.0);
-    assert!((measured.thinnest_mm().unwrap() - 1.0).abs() < 1e-9);
+    assert!(measured.thinnest.unwrap().place_mm[0] >= 50.0);
+    assert!((thinnest_mm(&measured) - 1.0).abs() < 1e-9);
 }
 
 #[test]
@@ -89,7 +103,7 @@ fn a_shell_is_as_thick_as_its_wall() {
         &turned(&fine_box([1.5; 3], [18.5; 3], 3)),
     );
     let measured = measure(&shell);
-    assert!((measured.thinnest_mm().unwrap() - 1.5).abs() < 1e-9);
+    assert!((thinnest_mm(&measured) - 1.5).abs() < 1e-9);
     let thin = measured
         .at_vertex_mm
         .iter()
@@ -105,10 +119,7 @@ fn nothing_lies_opposite_an_open_sheet_or_an_unused_vertex() {
     );
     let measured = measure(&sheet);
     assert_eq!(measured.at_vertex_mm, [f64::INFINITY; 4]);
-    assert_eq!(
-        (measured.thinnest_vertex, measured.thinnest_mm()),
-        (None, None)
-    );
+    assert_eq!(measured.thinnest, None);
     assert_eq!(measure(&TriangleMesh::default()), WallThickness::default());
 }
 

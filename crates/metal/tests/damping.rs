@@ -94,6 +94,7 @@ impl Scene {
         let task = Task::default();
         let placing = IsosurfaceSettings {
             threshold_hu: 350.0,
+            leveled: None,
             true_edges: true,
         };
         let mesh = isosurface(volume, placing, &task).unwrap();

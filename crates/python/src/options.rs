@@ -140,7 +140,7 @@ pub(crate) struct Threshold(pub(crate) ThresholdChoice);
 impl Threshold {
     /// The published threshold for skulls, which functions take where none is given.
     pub(crate) fn skull() -> Self {
-        Self(ThresholdPreset::Skull.into())
+        Self(ThresholdChoice::Given(ThresholdPreset::Skull.threshold()))
     }
 }
 

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use bonemesh_cloud::CloudError;
+use bonemesh_mesh::MeshError;
 use bonemesh_surface::SurfaceError;
 use bonemesh_task::Cancelled;
 
@@ -66,6 +67,40 @@ pub enum RoiError {
         /// The thickness asked for.
         thickness_mm: f64,
     },
+    /// Selected vertices without a selected triangle.
+    #[error(
+        "the {selected} selected vertices are the corners of no triangle; select a patch (in Blender: Select > Select More)"
+    )]
+    NoFace {
+        /// How many vertices are selected.
+        selected: usize,
+    },
+    /// The surface is open where it is to be cut.
+    #[error(
+        "the surface is open near the selection, so it has no inside to cut out; fill its holes first (bonemesh repair --fill-holes all)"
+    )]
+    Open,
+    /// Nothing lies below the patch.
+    #[error(
+        "nothing lies below the selection; select a patch of the outer side, and check that the surface is not inside out (bonemesh check)"
+    )]
+    NothingCut,
+    /// What is left touches itself, whatever is tried.
+    #[error(
+        "the solid would touch itself after {tries} tries; check the surface near the selection (bonemesh check), or select a little more or less"
+    )]
+    NoSound {
+        /// How often it was tried.
+        tries: u32,
+    },
+    /// The cut failed.
+    #[error(
+        "the solid cannot be cut out ({0}); check the surface near the selection (bonemesh check)"
+    )]
+    Cut(&'static str),
+    /// The mesh does not do.
+    #[error(transparent)]
+    Mesh(MeshError),
     /// The selection file cannot be read.
     #[error("cannot read the selection file {} ({reason}); check the path", path.display())]
     SelectionFile {
@@ -99,6 +134,15 @@ pub enum RoiError {
     /// Stopped on request.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+impl From<MeshError> for RoiError {
+    fn from(error: MeshError) -> Self {
+        match error {
+            MeshError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            other => Self::Mesh(other),
+        }
+    }
 }
 
 // A cancel stays a cancel, whichever step it stopped.

@@ -1,5 +1,9 @@
 //! The bone under a selected patch of its surface, down to a thickness, as a mesh of its own.
 //!
+//! [`select_solid`] cuts the bone under the patch out: a closed 2-manifold without self-intersections,
+//! whose front are the mesh's own triangles and whose sides stand upright on the surface. Limits: the
+//! surface must be closed near the selection; on a rough one the sides are a little rough, too.
+//!
 //! [`Method::Thesis`] finds the vertices of the mesh that lie behind the selection, slice by slice,
 //! and meshes them and the selection as a point cloud. Its limits are those of the published
 //! method: the mesh must consist of slices of equal z, because levels are matched with levels; one
@@ -28,11 +32,14 @@ mod error;
 mod method;
 mod region;
 mod selection;
+mod solid;
 mod thesis;
 mod thickness;
+mod vector;
 
 pub use error::RoiError;
 pub use method::Method;
 pub use region::{Region, select_region};
 pub use selection::read_selection;
+pub use solid::{Solid, select_solid};
 pub use thickness::ThicknessMm;

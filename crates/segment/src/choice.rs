@@ -43,8 +43,10 @@ impl fmt::Display for ThresholdFinder {
 /// A threshold as it is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ThresholdChoice {
-    /// A number, or that of a preset.
+    /// A number.
     Given(HuThreshold),
+    /// A published one.
+    Preset(ThresholdPreset),
     /// To be found in the volume.
     Found(ThresholdFinder),
 }
@@ -55,12 +57,6 @@ impl ThresholdChoice {
         let finders = ThresholdFinder::ALL.map(ThresholdFinder::name);
         let presets = ThresholdPreset::ALL.map(ThresholdPreset::name);
         finders.into_iter().chain(presets)
-    }
-}
-
-impl From<ThresholdPreset> for ThresholdChoice {
-    fn from(preset: ThresholdPreset) -> Self {
-        Self::Given(preset.threshold())
     }
 }
 
@@ -75,7 +71,7 @@ impl FromStr for ThresholdChoice {
         let given = || ThresholdPreset::ALL.into_iter().find(|p| p.name() == text);
         found
             .map(Self::Found)
-            .or_else(|| given().map(Self::from))
+            .or_else(|| given().map(Self::Preset))
             .ok_or_else(|| SegmentError::NoSuchThreshold(text.to_owned()))
     }
 }
@@ -89,10 +85,8 @@ mod tests {
         for name in ThresholdChoice::names() {
             match name.parse::<ThresholdChoice>().expect("it is a name") {
                 ThresholdChoice::Found(finder) => assert_eq!(finder.to_string(), name),
-                ThresholdChoice::Given(hu) => {
-                    let preset = ThresholdPreset::of(hu).expect("it is that of a preset");
-                    assert_eq!(preset.to_string(), name);
-                }
+                ThresholdChoice::Preset(preset) => assert_eq!(preset.to_string(), name),
+                ThresholdChoice::Given(_) => panic!("{name} is no number"),
             }
         }
         let number = HuThreshold::new(-12.5).expect("it is finite");

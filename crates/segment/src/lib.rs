@@ -177,7 +177,7 @@ pub enum SegmentError {
     #[error("a window of {0} mm cannot be used; choose a number above 0, such as 10")]
     Window(f64),
     /// A leeway or contrast that cannot be used.
-    #[error("a {what} of {hu} HU cannot be used; choose a number from 0, such as 150")]
+    #[error("a {what} of {hu} HU cannot be used; choose a number from 0 to 1000, such as 150")]
     Local {
         /// Which of them.
         what: &'static str,
@@ -230,6 +230,9 @@ pub enum SegmentError {
     Cancelled(#[from] Cancelled),
 }
 
+/// More lies between no two kinds of tissue.
+const MOST_LEEWAY_HU: f64 = 1000.0;
+
 /// What a volume spans, and which threshold would do.
 fn spanned(which: &str, lowest_hu: f64, highest_hu: f64) -> String {
     if lowest_hu < highest_hu {
@@ -251,7 +254,7 @@ fn spanned(which: &str, lowest_hu: f64, highest_hu: f64) -> String {
 impl SegmentError {
     /// A difference in HU, if it is one.
     fn local(what: &'static str, hu: f64) -> Result<f64, Self> {
-        if (0.0..f64::INFINITY).contains(&hu) {
+        if (0.0..=MOST_LEEWAY_HU).contains(&hu) {
             Ok(hu)
         } else {
             Err(Self::Local { what, hu })

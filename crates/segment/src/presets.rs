@@ -72,11 +72,6 @@ impl ThresholdPreset {
         };
         HuThreshold::new(hu).expect("presets are finite: anything else is a bug")
     }
-
-    /// The preset of that value, if there is one.
-    pub fn of(threshold: HuThreshold) -> Option<Self> {
-        Self::ALL.into_iter().find(|p| p.threshold() == threshold)
-    }
 }
 
 impl fmt::Display for ThresholdPreset {
@@ -90,11 +85,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_preset_is_found_by_its_value_and_has_a_source() {
+    fn every_preset_has_a_source_with_its_year() {
         for preset in ThresholdPreset::ALL {
-            assert_eq!(ThresholdPreset::of(preset.threshold()), Some(preset));
             assert!(preset.source().contains(char::is_numeric));
         }
-        assert_eq!(ThresholdPreset::of(HuThreshold::new(351.0).unwrap()), None);
     }
 }

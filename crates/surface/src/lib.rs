@@ -99,7 +99,7 @@ use bonemesh_cloud::CloudError;
 use bonemesh_delaunay::DelaunayError;
 use bonemesh_mesh::MeshError;
 use bonemesh_task::Cancelled;
-pub use isosurface::{IsosurfaceSettings, isosurface};
+pub use isosurface::{IsosurfaceSettings, isosurface, level_surface};
 pub use labelled::{LabelledSurface, labelled_surface};
 pub use planar::planar_surface;
 pub use poisson::{PoissonSettings, poisson};

@@ -18,7 +18,7 @@ fn volume(shape: [usize; 3], hu: impl Fn([f64; 3]) -> f64) -> Volume {
     common::volume(shape, SLICE_MM, hu)
 }
 
-fn surface(volume: &Volume, settings: IsosurfaceSettings) -> TriangleMesh {
+fn surface(volume: &Volume, settings: IsosurfaceSettings<'_>) -> TriangleMesh {
     let mesh = isosurface(volume, settings, &Task::default()).unwrap();
     assert_is_closed(&mesh);
     mesh
@@ -153,7 +153,7 @@ fn each_case_of_a_cube_is_sound_wherever_its_edges_are_cut() {
                 };
                 of[level % 5]
             });
-            surface(&common::of_voxels(voxels, map.clone()), at(350.0, false));
+            surface(&common::of_voxels(voxels, map), at(350.0, false));
         }
     }
 }

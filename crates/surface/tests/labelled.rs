@@ -11,7 +11,7 @@ use bonemesh_volume::{Affine, Volume};
 use common::{BONE_HU, PIXEL_MM, SOFT_HU, at, blurred, length, mean, mirrored, volume};
 use proptest::prelude::*;
 
-fn surface(volume: &Volume, settings: IsosurfaceSettings) -> TriangleMesh {
+fn surface(volume: &Volume, settings: IsosurfaceSettings<'_>) -> TriangleMesh {
     let surface = labelled_surface(volume, settings, &Task::default()).unwrap();
     assert_is_closed(&surface.mesh);
     surface.mesh

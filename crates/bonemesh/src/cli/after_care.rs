@@ -7,7 +7,7 @@ use bonemesh_mesh::{Decimation, Islands, read_mesh, write_mesh};
 use bonemesh_task::{Task, pool};
 use clap::Args;
 
-use super::arguments::{length_mm, mesh_file};
+use super::arguments::{count, length_mm, mesh_file};
 use super::output::Answer;
 use super::text;
 use crate::Error;
@@ -29,8 +29,8 @@ pub(super) struct AfterCareArguments {
     #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = length_mm)]
     smooth: Option<f64>,
     /// Take triangles away until this many are left.
-    #[arg(long, value_name = "COUNT")]
-    triangles: Option<usize>,
+    #[arg(long, value_name = "COUNT", allow_negative_numbers = true, value_parser = count)]
+    triangles: Option<NonZeroUsize>,
     /// Take triangles away as long as the surface moves no further than this.
     #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = length_mm)]
     decimate: Option<f64>,
@@ -44,7 +44,7 @@ impl AfterCareArguments {
             cavities: self.fill_cavities,
             smooth_mm: self.smooth,
             decimation: Decimation {
-                triangles: self.triangles,
+                triangles: self.triangles.map(NonZeroUsize::get),
                 error_mm: self.decimate,
             },
         }
@@ -61,7 +61,7 @@ pub(super) struct Repair {
     #[command(flatten)]
     care: AfterCareArguments,
     /// Worker threads; the result does not depend on it.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = count)]
     threads: Option<NonZeroUsize>,
 }
 

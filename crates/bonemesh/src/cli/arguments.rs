@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use bonemesh_cloud::{CloudFormat, Frame, Percent, Sampler};
 use bonemesh_dicom::SeriesChoice;
 use bonemesh_mesh::MeshFormat;
-use bonemesh_segment::{CannySettings, ThresholdChoice};
+use bonemesh_segment::{CannySettings, LocalThreshold, ThresholdChoice, ThresholdPreset};
 use bonemesh_volume::CropBox;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -78,7 +78,7 @@ pub(super) struct EdgeArguments {
     hu: ThresholdChoice,
     /// Let the threshold follow the mean around each voxel by up to so many HU, such as 150: keeps
     /// thin bone and narrow gaps, and lets in more noise.
-    #[arg(long, value_name = "HU", allow_negative_numbers = true, value_parser = number)]
+    #[arg(long, value_name = "HU", allow_negative_numbers = true, value_parser = leeway_hu)]
     local: Option<f64>,
     /// Canny's smoothing in pixels.
     #[arg(long, default_value = "1.0", allow_negative_numbers = true, value_parser = canny)]
@@ -95,7 +95,7 @@ pub(super) struct EdgeArguments {
     #[command(flatten)]
     sampling: SamplingArguments,
     /// Worker threads; the result does not depend on it.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = count)]
     threads: Option<NonZeroUsize>,
 }
 
@@ -168,7 +168,7 @@ pub(super) struct Check {
     #[arg(long, value_name = "PLY")]
     pub(super) walls: Option<PathBuf>,
     /// Worker threads; the result does not depend on it.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = count)]
     pub(super) threads: Option<NonZeroUsize>,
 }
 
@@ -213,7 +213,7 @@ pub(super) struct MeshArguments {
     #[command(flatten)]
     pub(super) surface: SurfaceArguments,
     /// Worker threads; the result does not depend on it.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = count)]
     pub(super) threads: Option<NonZeroUsize>,
 }
 
@@ -292,6 +292,19 @@ fn cloud_file() -> impl TypedValueParser<Value = PathBuf> {
 fn canny(text: &str) -> Result<CannySettings, String> {
     let standard = CannySettings::default();
     CannySettings::new(number(text)?, standard.low(), standard.high()).map_err(|e| e.to_string())
+}
+
+fn leeway_hu(text: &str) -> Result<f64, String> {
+    let leeway_hu = number(text)?;
+    let local = LocalThreshold::around(ThresholdPreset::Skull.threshold());
+    let checked = local.with_leeway_hu(leeway_hu);
+    checked.map(|_| leeway_hu).map_err(|e| e.to_string())
+}
+
+/// How many of something, at least one.
+pub(super) fn count(text: &str) -> Result<NonZeroUsize, String> {
+    let refused = |_| format!("`{text}` is no number of them; use a whole number from 1");
+    text.parse().map_err(refused)
 }
 
 fn percent(text: &str) -> Result<Percent, String> {

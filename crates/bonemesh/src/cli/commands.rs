@@ -92,12 +92,17 @@ fn run_cloud(arguments: &CloudArguments, task: &Task) -> Result<Answer, Error> {
     let text = format!(
         "{}\n{}  {points} points\n",
         arguments.output.display(),
-        text::threshold(chosen.threshold.hu(), chosen.reason.as_deref())
+        text::threshold(
+            chosen.threshold.hu(),
+            settings.local_leeway_hu,
+            chosen.reason.as_deref()
+        )
     );
     let report = json!({
         "points": points,
         "threshold_hu": chosen.threshold.hu(),
         "threshold_reason": chosen.reason,
+        "local_leeway_hu": settings.local_leeway_hu,
         "output": arguments.output.to_string_lossy(),
         "warnings": series.warnings,
     });

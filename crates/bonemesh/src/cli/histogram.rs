@@ -5,11 +5,12 @@ use std::num::{NonZeroU16, NonZeroUsize};
 use std::path::PathBuf;
 
 use bonemesh_dicom::SeriesChoice;
-use bonemesh_segment::ThresholdChoice;
+use bonemesh_segment::ThresholdFinder;
 use bonemesh_task::Task;
 use bonemesh_volume::CropBox;
 use clap::Args;
 
+use super::arguments::count;
 use super::output::Answer;
 use crate::Error;
 use crate::picture::{check_picture_target, write_histogram};
@@ -26,7 +27,7 @@ pub(super) struct HistogramArguments {
     #[arg(short, long, value_name = "PNG")]
     output: Option<PathBuf>,
     /// Width of the bins in HU.
-    #[arg(long, value_name = "HU", default_value = "10")]
+    #[arg(long, value_name = "HU", default_value = "10", allow_negative_numbers = true, value_parser = width_hu)]
     bin: NonZeroU16,
     /// Which series: its UID or its number in `bonemesh info`.
     #[arg(long)]
@@ -38,8 +39,13 @@ pub(super) struct HistogramArguments {
     #[arg(long, value_name = "I0:I1,J0:J1,K0:K1")]
     crop: Option<CropBox>,
     /// Worker threads; the result does not depend on it.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = count)]
     threads: Option<NonZeroUsize>,
+}
+
+fn width_hu(text: &str) -> Result<NonZeroU16, String> {
+    let refused = |_| format!("`{text}` is no width; use a whole number of HU from 1, such as 10");
+    text.parse().map_err(refused)
 }
 
 /// Runs `histogram`.
@@ -98,7 +104,10 @@ fn in_words(report: &HistogramReport) -> String {
         ));
         line(format!("{:40}{}", "", s.source));
     }
-    let names: Vec<&str> = ThresholdChoice::names().collect();
+    let listed = report.suggestions.iter().map(|s| s.name);
+    let auto = report.suggestions.iter().any(|s| s.recommended);
+    let auto = auto.then_some(ThresholdFinder::Auto.name());
+    let names: Vec<&str> = auto.into_iter().chain(listed).collect();
     let names = names.join(", ");
     line(format!("use one with --hu: {names}, or any number"));
     for warning in &report.warnings {

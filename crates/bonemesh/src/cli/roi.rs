@@ -8,7 +8,7 @@ use bonemesh_mesh::TriangleMesh;
 use bonemesh_roi::{Method as RoiMethod, ThicknessMm};
 use clap::Args;
 
-use super::arguments::{mesh_file, number};
+use super::arguments::{count, mesh_file, number};
 
 #[derive(Debug, Args)]
 pub(super) struct Roi {
@@ -22,11 +22,11 @@ pub(super) struct Roi {
     /// Mesh file to write (.stl, .ply, .obj, .3mf).
     #[arg(short, long, value_parser = mesh_file())]
     pub(super) output: PathBuf,
-    /// How the region is found.
+    /// How the region is found: thesis.
     #[arg(long, default_value = "thesis")]
     pub(super) method: RoiMethod,
     /// Worker threads; the result does not depend on it.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true, value_parser = count)]
     pub(super) threads: Option<NonZeroUsize>,
 }
 

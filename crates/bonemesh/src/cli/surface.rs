@@ -35,7 +35,7 @@ pub(super) struct StudyArguments {
     #[arg(long, value_name = "MM,MM", value_delimiter = ',', value_parser = length_mm)]
     radii: Option<Vec<f64>>,
     /// Poisson's cube has 2^DEPTH cells a side, 3 to 8.
-    #[arg(long, default_value_t = Settings::default().depth, value_parser = clap::value_parser!(u32).range(3..=8))]
+    #[arg(long, default_value_t = Settings::default().depth, allow_negative_numbers = true, value_parser = depth)]
     depth: u32,
     /// Poisson's cube is so many times as large as the points, 1 to 10.
     #[arg(long, default_value_t = Settings::default().scale, value_parser = scale)]
@@ -52,6 +52,11 @@ impl StudyArguments {
             ..settings
         }
     }
+}
+
+fn depth(text: &str) -> Result<u32, String> {
+    let depth = text.parse().ok().filter(|depth| (3..=8).contains(depth));
+    depth.ok_or_else(|| format!("`{text}` is no depth; use a whole number from 3 to 8"))
 }
 
 fn scale(text: &str) -> Result<f64, String> {

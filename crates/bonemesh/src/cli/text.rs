@@ -54,33 +54,33 @@ pub(super) fn printable(text: &str) -> String {
 /// `render` and `mesh`.
 pub(super) fn rendered(report: &RenderReport, file: &Path) -> String {
     let mut text = String::new();
-    let mut line = |l: String| {
-        text.push_str(&l);
-        text.push('\n');
-    };
-    line(format!("{}", file.display()));
-    line(format!(
+    // Writing to a String cannot fail.
+    let _ = writeln!(text, "{}", file.display());
+    let _ = writeln!(
+        text,
         "  {} triangles, {} vertices, {}{}",
         report.triangles,
         report.vertices,
         components(report.components, report.cavities),
         enclosed(report.watertight, report.volume_mm3)
-    ));
+    );
     if let (Some(points), Some(alpha_mm), Some(tetrahedra)) =
         (report.points, report.alpha_mm, report.tetrahedra)
     {
-        line(format!(
+        let _ = writeln!(
+            text,
             "  {points} points, alpha {alpha_mm:.3} mm, {tetrahedra} tetrahedra"
-        ));
+        );
     }
     if let (Some(coefficient), Some(bone_mm3)) = (report.alpha_coefficient, report.bone_volume_mm3)
     {
-        line(format!(
+        let _ = writeln!(
+            text,
             "  alpha is {coefficient:.3} times the mean distance, for the bone's {}",
             volume(bone_mm3)
-        ));
+        );
     }
-    line(format!("  {}", verdict(report.watertight, report.manifold)));
+    let _ = writeln!(text, "  {}", verdict(report.watertight, report.manifold));
     let left_out = [
         (
             "the scanner's table",
@@ -91,26 +91,25 @@ pub(super) fn rendered(report: &RenderReport, file: &Path) -> String {
     ];
     for (name, left_out, remedy) in left_out {
         if let Some(left_out) = left_out {
-            line(format!(
-                "  left out what looks like {name}: {} in {} islands ({remedy})",
+            let _ = writeln!(
+                text,
+                "  left out what looks like {name}: {} in {} ({remedy})",
                 volume(left_out.volume_mm3),
-                left_out.islands
-            ));
+                counted(left_out.islands, "island", "islands")
+            );
         }
     }
     if let Some(report) = &report.after_care {
         text.push_str(&after_care(report));
     }
     if let Some(hu) = report.threshold_hu {
-        text.push_str(&threshold(hu, report.threshold_reason.as_deref()));
+        let reason = report.threshold_reason.as_deref();
+        text.push_str(&threshold(hu, report.local_leeway_hu, reason));
     }
-    let mut line = |l: String| {
-        text.push_str(&l);
-        text.push('\n');
-    };
-    line(format!("  {}", seconds(&report.seconds)));
+    let after_care_s = report.after_care.as_ref().map_or(0.0, |care| care.seconds);
+    let _ = writeln!(text, "  {}", seconds(&report.seconds, after_care_s));
     for warning in &report.warnings {
-        line(format!("  note: {warning}"));
+        let _ = writeln!(text, "  note: {warning}");
     }
     text
 }
@@ -119,7 +118,7 @@ pub(super) fn rendered(report: &RenderReport, file: &Path) -> String {
 const SHOWN_S: f64 = 0.005;
 
 /// The time of all, and of the steps that took place.
-fn seconds(seconds: &Seconds) -> String {
+fn seconds(seconds: &Seconds, after_care_s: f64) -> String {
     let steps = [
         ("read", seconds.read),
         ("edges", seconds.edges),
@@ -127,6 +126,7 @@ fn seconds(seconds: &Seconds) -> String {
         ("neighbours", seconds.neighbours),
         ("tetrahedra", seconds.tetrahedra),
         ("surface", seconds.surface),
+        ("after-care", after_care_s),
         ("write", seconds.write),
     ];
     let steps: Vec<String> = steps
@@ -145,7 +145,8 @@ pub(super) fn after_care(report: &AfterCareReport) -> String {
     let mut text = String::new();
     if let (Some(filled), Some(left)) = (report.filled_holes, report.left_holes) {
         // Writing to a String cannot fail.
-        let _ = writeln!(text, "  {filled} holes filled, {left} left");
+        let filled = counted(filled, "hole", "holes");
+        let _ = writeln!(text, "  {filled} filled, {left} left");
         for hole in report.largest_left_holes.iter().take(HOLES_SHOWN) {
             let [x, y, z] = hole.place_mm;
             let _ = writeln!(
@@ -187,7 +188,7 @@ pub(super) fn after_care(report: &AfterCareReport) -> String {
     if let Some(wanted) = report.missed_triangles {
         let _ = writeln!(
             text,
-            "  {wanted} triangles were asked for, but with fewer than are left the surface would lose its shape or pass through itself"
+            "  {wanted} triangles were asked for; no more could go without bending the surface too much or taking it through itself or out of its bounds"
         );
     }
     text
@@ -202,10 +203,16 @@ fn volume(mm3: f64) -> String {
     }
 }
 
+/// `count` with its noun.
+fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}
+
 /// How many parts there are, and how many of them are inside others.
 fn components(components: usize, cavities: usize) -> String {
     match cavities {
-        0 => format!("{components} components"),
+        0 => counted(components, "component", "components"),
+        1 => format!("{components} components (one the wall of a cavity)"),
         _ => format!("{components} components ({cavities} walls of cavities)"),
     }
 }
@@ -219,25 +226,25 @@ fn enclosed(watertight: bool, mm3: f64) -> String {
     }
 }
 
-/// The threshold, and where it is from.
-pub(super) fn threshold(hu: f64, reason: Option<&str>) -> String {
-    match reason {
-        Some(reason) => format!("  bone above {hu} HU ({reason})\n"),
-        None => format!("  bone above {hu} HU\n"),
-    }
+/// The threshold, how far it may lie elsewhere around a voxel, and where it is from.
+pub(super) fn threshold(hu: f64, leeway_hu: Option<f64>, reason: Option<&str>) -> String {
+    let leeway = leeway_hu.map(|hu| format!(", by place up to {hu} HU more or less"));
+    let reason = reason.map(|reason| format!(" ({reason})"));
+    let [leeway, reason] = [leeway, reason].map(Option::unwrap_or_default);
+    format!("  bone above {hu} HU{leeway}{reason}\n")
 }
 
 /// `roi`.
 pub(super) fn region(report: &RegionReport, file: &Path) -> String {
     format!(
-        "{}\n  {} selected vertices, {} points behind them, thickness {} mm\n  {} triangles, {} vertices, {} components{}\n  {}\n  {:.2} s\n",
+        "{}\n  {} selected vertices, {} points behind them, thickness {} mm\n  {} triangles, {} vertices, {}{}\n  {}\n  {:.2} s\n",
         file.display(),
         report.selected,
         report.kept_points,
         report.thickness_mm,
         report.triangles,
         report.vertices,
-        report.components,
+        components(report.components, 0),
         enclosed(report.watertight, report.volume_mm3),
         verdict(report.watertight, report.manifold),
         report.seconds,
@@ -322,8 +329,8 @@ pub(super) fn checked(check: &PrintCheck, file: &Path) -> String {
 fn intersections(check: &PrintCheck) -> String {
     match check.intersections.first() {
         Some(first) => format!(
-            "{} pairs, {} triangles; the first at {}",
-            check.self_intersections,
+            "{}, {} triangles; the first at {}",
+            counted(check.self_intersections, "pair", "pairs"),
             check.intersecting_triangles,
             place(first.place_mm)
         ),

@@ -82,7 +82,9 @@ pub fn decimate(
     let error_mm = (goal.error_mm)
         .map(|error_mm| MeshError::length("error bound", error_mm))
         .transpose()?;
-    let all = if error_mm.is_some() { 0 } else { usize::MAX };
+    // With a bound alone, as far as it goes.
+    let is_bound = error_mm.is_some() && goal.triangles.is_none();
+    let all = if is_bound { 0 } else { usize::MAX };
     let end = goal.triangles.unwrap_or(all);
     let given = mesh.as_written(task)?;
     let triangles = given.triangles().len();
@@ -103,7 +105,7 @@ pub fn decimate(
         } else {
             let is_other = run.repeat(&steps, &is_narrower, task)?;
             // A number is reached wherever it costs least; an error bound, only beside what changed.
-            let at = (end == 0).then_some(&*is_other);
+            let at = is_bound.then_some(&*is_other);
             run.collapse(end, at, task)?;
         }
         let standing = run.standing();

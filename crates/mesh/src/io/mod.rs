@@ -87,6 +87,11 @@ pub fn check_target(path: impl AsRef<Path>) -> Result<(), MeshError> {
 /// format, cut short, without triangles, or the work was cancelled.
 pub fn read_mesh(path: impl AsRef<Path>, task: &Task) -> Result<TriangleMesh, MeshError> {
     let path = path.as_ref();
+    if path.is_dir() {
+        return Err(MeshError::IsFolder {
+            path: path.to_path_buf(),
+        });
+    }
     let mesh = match MeshFormat::of(path)? {
         MeshFormat::Stl => stl_read::read(path, task)?,
         MeshFormat::Ply => ply_read::read(path, task)?,

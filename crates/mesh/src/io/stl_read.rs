@@ -89,9 +89,9 @@ fn kind_of(head: &[u8], bytes: u64) -> Kind {
         None if bytes == 0 => "it is empty".into(),
         None => format!("{bytes} bytes are too few"),
         Some(triangles) => format!(
-            "it is no text beginning with solid, and as a binary file of {bytes} bytes it would \
-             hold {} triangles where its header says {triangles}",
-            bytes.saturating_sub(HEAD) / RECORD,
+            "it is no text beginning with solid, and as a binary file of {triangles} triangles, as its \
+             header says, it would have {} bytes and not {bytes}",
+            HEAD + RECORD * u64::from(triangles),
         ),
     })
 }

@@ -53,8 +53,10 @@ fn encode_block(block: &[[u32; 3]], mesh: &TriangleMesh, bytes: &mut Vec<u8>) {
 
 /// Fills one record; the attribute stays 0.
 fn encode(record: &mut [u8; RECORD], corners_mm: [[f64; 3]; 3]) {
-    let [a, b, c] = corners_mm;
-    let vectors = [unit_normal(corners_mm), a, b, c];
+    // The normal of the corners as they are written, which readers compare it with.
+    let corners = corners_mm.map(|corner| corner.map(|value| f64::from(value as f32)));
+    let [a, b, c] = corners;
+    let vectors = [unit_normal(corners), a, b, c];
     let (fields, _attribute) = record.as_chunks_mut::<4>();
     for (field, value) in fields.iter_mut().zip(vectors.as_flattened()) {
         *field = (*value as f32).to_le_bytes();

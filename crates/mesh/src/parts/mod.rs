@@ -127,6 +127,11 @@ impl Island<'_> {
         self.triangles.is_empty()
     }
 
+    /// The numbers of its triangles.
+    pub fn numbers(&self) -> &[u32] {
+        self.triangles
+    }
+
     /// The corners (mm) of its triangles, one in `stride`.
     pub fn triangles_mm(&self, stride: usize) -> impl Iterator<Item = [[f64; 3]; 3]> {
         let numbers = self.triangles.iter().step_by(stride.max(1));
@@ -191,6 +196,35 @@ pub fn fill_cavities(
         .map(|part| !parts.with_parents(part).any(is_filled))
         .collect();
     parts.only(&is_kept)
+}
+
+/// How the closed parts of a mesh lie in one another, where that makes no sense.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Nesting {
+    /// Parts that face inward but lie in none that faces outward.
+    pub inside_out: usize,
+    /// Parts that face outward and lie in the material of another: counted twice in the volume.
+    pub doubled: usize,
+    /// Cavities.
+    pub cavities: usize,
+}
+
+/// Looks how the closed parts of a mesh lie in one another.
+///
+/// # Errors
+/// [`MeshError::Cancelled`]
+pub fn check_nesting(mesh: &TriangleMesh, task: &Task) -> Result<Nesting, MeshError> {
+    let parts = Parts::of(mesh, task)?;
+    let mut nesting = Nesting::default();
+    for part in parts.known.iter().filter(|part| part.is_closed) {
+        let parent = part.parent.map(|parent| &parts.known[parent as usize]);
+        let is_inward = part.volume_mm3 < 0.0;
+        nesting.cavities += usize::from(part.is_cavity);
+        nesting.inside_out += usize::from(is_inward && !part.is_cavity);
+        let is_in_material = parent.is_some_and(|parent| parent.volume_mm3 > 0.0);
+        nesting.doubled += usize::from(!is_inward && is_in_material);
+    }
+    Ok(nesting)
 }
 
 /// A mesh in parts.

@@ -17,7 +17,7 @@ use rayon::prelude::*;
 
 use crate::vector::{cross, dot, minus};
 use crate::{MeshError, TriangleMesh};
-pub(crate) use sets::Sets;
+pub use sets::Sets;
 pub(crate) use vertex::Incidence;
 
 /// Triangles or vertices done between two looks at the cancel switch.

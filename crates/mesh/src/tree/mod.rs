@@ -10,11 +10,15 @@
 //! threads.
 
 mod bounds;
+mod nearest;
+mod ray;
 
 use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;
 
 pub(crate) use bounds::Bounds;
+pub use nearest::Nearest;
+pub(crate) use ray::{Ray, Start, first_hit};
 
 use crate::exact::{Corners, has_area};
 use crate::{MeshError, TriangleMesh};

@@ -61,7 +61,8 @@ impl LocalThreshold {
     /// How far a voxel's threshold may lie from the global one.
     ///
     /// # Errors
-    /// [`SegmentError::Local`] unless it is a number from 0.
+    /// [`SegmentError::Local`] unless it is a number from 0 to 1000, what lies between soft tissue and
+    /// dense bone.
     pub fn with_leeway_hu(self, leeway_hu: f64) -> Result<Self, SegmentError> {
         let leeway_hu = SegmentError::local("leeway", leeway_hu)?;
         Ok(Self { leeway_hu, ..self })
@@ -70,7 +71,7 @@ impl LocalThreshold {
     /// The standard deviation in its window from which a voxel's threshold may lie elsewhere.
     ///
     /// # Errors
-    /// [`SegmentError::Local`] unless it is a number from 0.
+    /// [`SegmentError::Local`] unless it is a number from 0 to 1000.
     pub fn with_contrast_hu(self, contrast_hu: f64) -> Result<Self, SegmentError> {
         let contrast_hu = SegmentError::local("contrast", contrast_hu)?;
         Ok(Self {

@@ -34,14 +34,14 @@ const THRESHOLD_CONTRAST_HU: f32 = 1000.0;
 /// -0.5 to 0.5 across an edge, lower where something darker lies beyond it.
 pub(super) fn above_level<T: Voxel>(
     grey: &Grey<'_, T>,
-    threshold_hu: f32,
+    above_threshold_hu: impl Fn([usize; 3]) -> f32 + Sync,
     voxel_mm: [f32; 3],
     steepest: impl Fn([f32; 3]) -> [f32; 3] + Sync,
     task: &Task,
 ) -> Result<Vec<f32>, Cancelled> {
     let shape = grey.shape();
     task.begin("edges", 2 * shape[2] + 1);
-    let edges = edges(grey, threshold_hu, steepest, task)?;
+    let edges = edges(grey, &above_threshold_hu, steepest, task)?;
     let blur = Blur::of(&edges);
     let has_soft_tissue = layer::has_soft_tissue(&edges);
     let level_hu = |edge: &Edge| level_hu(edge, blur, has_soft_tissue);
@@ -56,8 +56,9 @@ pub(super) fn above_level<T: Voxel>(
             task.advance(1)?;
             let sums = spread(&sources, k, shape, reach);
             for (place, (value, sum)) in slice.iter_mut().zip(sums).enumerate() {
-                let hu = grey.at([place % shape[0], place / shape[0], k]);
-                *value = sum.above(hu, threshold_hu);
+                let at = [place % shape[0], place / shape[0], k];
+                let hu = grey.at(at);
+                *value = sum.above(hu, hu - above_threshold_hu(at));
             }
             Ok(())
         })?;
@@ -67,12 +68,12 @@ pub(super) fn above_level<T: Voxel>(
 /// The edges near the threshold's surface, slice by slice.
 fn edges<T: Voxel>(
     grey: &Grey<'_, T>,
-    threshold_hu: f32,
+    above_threshold_hu: impl Fn([usize; 3]) -> f32 + Sync,
     steepest: impl Fn([f32; 3]) -> [f32; 3] + Sync,
     task: &Task,
 ) -> Result<Vec<Vec<Edge>>, Cancelled> {
     let shape = grey.shape();
-    let signs = Signs::of(shape, |at| grey.at(at) > threshold_hu, task)?;
+    let signs = Signs::of(shape, |at| above_threshold_hu(at) > 0.0, task)?;
     (0..signs.slices())
         .into_par_iter()
         .map(|k| {
@@ -85,7 +86,7 @@ fn edges<T: Voxel>(
                 let Some([a, b]) = cut::voxels(node, axis, shape) else {
                     return;
                 };
-                let part = cut::linear(grey.at(a) - threshold_hu, grey.at(b) - threshold_hu);
+                let part = cut::linear(above_threshold_hu(a), above_threshold_hu(b));
                 let gradient = grey.gradient_between(a, b, part);
                 let place = cut::place(a, axis, part);
                 edges.extend(edge_near(grey, place, gradient, &steepest));

@@ -41,16 +41,19 @@ const SMOOTH_PIXELS: f32 = 0.2;
 
 /// How an isosurface is placed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct IsosurfaceSettings {
+pub struct IsosurfaceSettings<'a> {
     /// Bone is above this.
     pub threshold_hu: f64,
+    /// The volume with values that stand above the threshold where and as far as those of the volume
+    /// itself stand above thresholds of their own, if they have such ones.
+    pub leveled: Option<&'a Volume>,
     /// Moves the surface to the true edges of the bone, whatever the threshold, and smooths an
     /// isosurface by up to a fifth of a pixel; otherwise it lies where the grey between voxels equals
     /// the threshold.
     pub true_edges: bool,
 }
 
-impl IsosurfaceSettings {
+impl IsosurfaceSettings<'_> {
     /// How values between voxels pass 0.
     pub(crate) fn crossing(self) -> Crossing {
         if self.true_edges {
@@ -71,7 +74,7 @@ impl IsosurfaceSettings {
 /// [`SurfaceError::Cancelled`].
 pub fn isosurface(
     volume: &Volume,
-    settings: IsosurfaceSettings,
+    settings: IsosurfaceSettings<'_>,
     task: &Task,
 ) -> Result<TriangleMesh, SurfaceError> {
     let affine = volume.geometry().patient_from_voxel();
@@ -88,7 +91,7 @@ pub fn isosurface(
         )
     } else {
         let threshold = threshold(volume, settings);
-        match volume.voxels() {
+        match settings.leveled.unwrap_or(volume).voxels() {
             Voxels::I16(hu) => in_order(hu, |grey| {
                 let above = |at| grey.at(at) - threshold;
                 surface(grey.shape(), above, settings.crossing(), affine, None, task)
@@ -104,9 +107,9 @@ pub fn isosurface(
 
 /// Why there is no surface: no voxel is above the threshold, or those that are do not reach the
 /// grey of their own edges.
-pub(crate) fn nothing(volume: &Volume, settings: IsosurfaceSettings) -> SurfaceError {
+pub(crate) fn nothing(volume: &Volume, settings: IsosurfaceSettings<'_>) -> SurfaceError {
     let threshold = threshold(volume, settings);
-    let is_any_above = match volume.voxels() {
+    let is_any_above = match settings.leveled.unwrap_or(volume).voxels() {
         Voxels::I16(hu) => hu.iter().any(|&hu| f32::from(hu) > threshold),
         Voxels::F32(hu) => hu.iter().any(|&hu| hu > threshold),
     };
@@ -139,7 +142,7 @@ fn in_order<T: Voxel, R>(hu: &Array3<T>, of: impl FnOnce(&Grey<'_, T>) -> R) -> 
 }
 
 /// The threshold, above all of its whole numbers: so none of them lies just on the surface.
-fn threshold(volume: &Volume, settings: IsosurfaceSettings) -> f32 {
+fn threshold(volume: &Volume, settings: IsosurfaceSettings<'_>) -> f32 {
     let hu = match volume.voxels() {
         Voxels::I16(_) => settings.threshold_hu.floor() + 0.5,
         Voxels::F32(_) => settings.threshold_hu,
@@ -151,27 +154,55 @@ fn threshold(volume: &Volume, settings: IsosurfaceSettings) -> f32 {
 /// inside; at the true edges as a part of their contrast, otherwise in HU. The stage is `edges`.
 pub(crate) fn above_level(
     volume: &Volume,
-    settings: IsosurfaceSettings,
-    task: &Task,
-) -> Result<Vec<f32>, Cancelled> {
-    match volume.voxels() {
-        Voxels::I16(hu) => in_order(hu, |grey| above(grey, volume, settings, task)),
-        Voxels::F32(hu) => in_order(hu, |grey| above(grey, volume, settings, task)),
-    }
-}
-
-fn above<T: Voxel>(
-    grey: &Grey<'_, T>,
-    volume: &Volume,
-    settings: IsosurfaceSettings,
+    settings: IsosurfaceSettings<'_>,
     task: &Task,
 ) -> Result<Vec<f32>, Cancelled> {
     let threshold = threshold(volume, settings);
+    let of = settings.leveled.unwrap_or(volume);
+    match volume.voxels() {
+        Voxels::I16(hu) => in_order(hu, |grey| {
+            above_in(grey, of, threshold, volume, settings, task)
+        }),
+        Voxels::F32(hu) => in_order(hu, |grey| {
+            above_in(grey, of, threshold, volume, settings, task)
+        }),
+    }
+}
+
+/// Compares the voxels of another volume on the same lattice with the threshold.
+fn above_in<T: Voxel>(
+    grey: &Grey<'_, T>,
+    compared: &Volume,
+    threshold: f32,
+    volume: &Volume,
+    settings: IsosurfaceSettings<'_>,
+    task: &Task,
+) -> Result<Vec<f32>, Cancelled> {
+    match compared.voxels() {
+        Voxels::I16(hu) => in_order(hu, |compared| {
+            let above_threshold = |at| compared.at(at) - threshold;
+            above(grey, above_threshold, volume, settings, task)
+        }),
+        Voxels::F32(hu) => in_order(hu, |compared| {
+            let above_threshold = |at| compared.at(at) - threshold;
+            above(grey, above_threshold, volume, settings, task)
+        }),
+    }
+}
+
+/// `above_threshold` tells how far (HU) a voxel is above its threshold.
+fn above<T: Voxel>(
+    grey: &Grey<'_, T>,
+    above_threshold: impl Fn([usize; 3]) -> f32 + Sync,
+    volume: &Volume,
+    settings: IsosurfaceSettings<'_>,
+    task: &Task,
+) -> Result<Vec<f32>, Cancelled> {
     if settings.true_edges {
         let geometry = volume.geometry();
         let spacing = geometry.spacing_mm().map(|v| v as f32);
         let steepest = steepest(geometry.patient_from_voxel());
-        return level::above_level(grey, threshold, spacing, steepest, task);
+        return level::above_level(grey, above_threshold, spacing, steepest, task);
     }
     let [columns, rows, slices] = grey.shape();
     task.begin("edges", slices);
@@ -182,7 +213,7 @@ fn above<T: Voxel>(
         .try_for_each(|(k, slice)| {
             task.advance(1)?;
             for (place, value) in slice.iter_mut().enumerate() {
-                *value = grey.at([place % columns, place / columns, k]) - threshold;
+                *value = above_threshold([place % columns, place / columns, k]);
             }
             Ok(())
         })?;
@@ -208,6 +239,26 @@ fn steepest(affine: &Affine) -> impl Fn([f32; 3]) -> [f32; 3] + Sync + use<> {
     ]
     .map(|row| row.map(|v| v as f32));
     move |g: [f32; 3]| rows.map(|row| row[0] * g[0] + row[1] * g[1] + row[2] * g[2])
+}
+
+/// The surface between the nodes of a lattice with values above 0 and the others, where lines between
+/// them pass 0: a closed 2-manifold without self-intersections, outward-oriented; `None` if no value is
+/// above 0.
+///
+/// `values` are by slice, row and column of `[columns, rows, slices]`; `affine` puts columns, rows and
+/// slices to their places. The stage is `surface`.
+///
+/// # Errors
+/// [`SurfaceError::TooLarge`], [`SurfaceError::Cancelled`].
+pub fn level_surface(
+    values: &[f32],
+    [columns, rows, slices]: [usize; 3],
+    affine: &Affine,
+    task: &Task,
+) -> Result<Option<TriangleMesh>, SurfaceError> {
+    let value = |[i, j, k]: [usize; 3]| values[(k * rows + j) * columns + i];
+    let shape = [columns, rows, slices];
+    surface(shape, value, cut::linear, affine, None, task)
 }
 
 /// The surface between voxels of a value above 0 and others, if there are any; `crossing` tells

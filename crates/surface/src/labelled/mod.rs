@@ -61,7 +61,7 @@ pub struct LabelledSurface {
 /// too many points, [`SurfaceError::Cancelled`].
 pub fn labelled_surface(
     volume: &Volume,
-    settings: IsosurfaceSettings,
+    settings: IsosurfaceSettings<'_>,
     task: &Task,
 ) -> Result<LabelledSurface, SurfaceError> {
     let geometry = volume.geometry();

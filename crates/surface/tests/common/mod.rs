@@ -14,9 +14,10 @@ pub(crate) const BONE_HU: f64 = 1240.0;
 pub(crate) const PIXEL_MM: f64 = 0.5;
 pub(crate) const BLUR_MM: f64 = 0.4;
 
-pub(crate) fn at(threshold_hu: f64, true_edges: bool) -> IsosurfaceSettings {
+pub(crate) fn at(threshold_hu: f64, true_edges: bool) -> IsosurfaceSettings<'static> {
     IsosurfaceSettings {
         threshold_hu,
+        leveled: None,
         true_edges,
     }
 }

@@ -15,15 +15,12 @@
 //! largest ball that touches the vertex from inside would be the cleaner definition, but is nothing
 //! at every convex edge.
 
-mod ray;
-
 use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;
 
-use crate::tree::TriangleTree;
+use crate::tree::{Ray, Start, TriangleTree, first_hit};
 use crate::vector::{Vector, cross, dot, minus, plus_scaled, unit};
 use crate::{MeshError, TriangleMesh};
-use ray::{Ray, first_hit};
 
 /// Cosine and sine of the angle between the cone's rim and its axis: 15 degrees.
 const RIM: (f64, f64) = (0.965_925_826_289_068_3, 0.258_819_045_102_520_74);
@@ -51,27 +48,32 @@ const TRIANGLE_STRIDE: usize = 1 << 16;
 pub struct WallThickness {
     /// Thickness (mm) at each vertex; infinite where nothing lies opposite, as at unused vertices.
     pub at_vertex_mm: Vec<f64>,
-    /// The vertex (its number) with the smallest thickness, the first of equal ones; `None` if all
-    /// are infinite.
-    pub thinnest_vertex: Option<u32>,
+    /// Thickness (mm) in the middle of each triangle; infinite where nothing lies opposite.
+    pub at_triangle_mm: Vec<f64>,
+    /// Where it is smallest; `None` if nothing lies opposite anywhere.
+    pub thinnest: Option<Thinnest>,
 }
 
-impl WallThickness {
-    /// The smallest thickness (mm).
-    pub fn thinnest_mm(&self) -> Option<f64> {
-        self.thinnest_vertex
-            .map(|vertex| self.at_vertex_mm[vertex as usize])
-    }
+/// The place where a wall is thinnest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Thinnest {
+    /// The thickness.
+    pub thickness_mm: f64,
+    /// A vertex, or the middle of a triangle.
+    pub place_mm: [f64; 3],
 }
 
-/// Measures how far it is from each vertex through the body to the other side.
+/// Measures how far it is from each vertex, and from the middle of each triangle, through the body to
+/// the other side.
 ///
 /// The mesh should be closed, outward, and without two vertices at one place
 /// ([`TriangleMesh::merged`]): inward is what lies against the triangles' normals. The thickness is
 /// the least length of seven rays, along the inward normal and at 15 degrees around it, that end at
-/// a triangle which faces the other way to within 60 degrees.
+/// a triangle which faces the other way to within 60 degrees; from a triangle, whose normal does not
+/// lean, of one.
 ///
-/// Limits: it is measured at vertices only. Towards an edge sharper than 60 degrees a body thins out
+/// Limits: at the corner of a body with few triangles the normal points along a diagonal, and the
+/// thickness of that vertex is as long. Towards an edge sharper than 60 degrees a body thins out
 /// to nothing, and so do the numbers; they say nothing of how strong it is. Where triangles pass
 /// through one another, the nearest of them ends the ray.
 ///
@@ -81,7 +83,8 @@ impl WallThickness {
 /// [`MeshError::Cancelled`]
 pub fn wall_thickness(tree: &TriangleTree<'_>, task: &Task) -> Result<WallThickness, MeshError> {
     let mesh = tree.mesh();
-    task.begin("wall thickness", mesh.vertices_mm().len());
+    let (vertices, triangles) = (mesh.vertices_mm(), mesh.triangles());
+    task.begin("wall thickness", vertices.len() + triangles.len());
     let normals = inward_normals(mesh, task)?;
     let mut at_vertex_mm = vec![f64::INFINITY; normals.len()];
     at_vertex_mm
@@ -95,14 +98,51 @@ pub fn wall_thickness(tree: &TriangleTree<'_>, task: &Task) -> Result<WallThickn
             }
             task.advance(thickness.len())
         })?;
-    let finite = (0..).zip(&at_vertex_mm).filter(|(_, t)| t.is_finite());
-    let thinnest_vertex = finite
-        .min_by(|(_, a), (_, b)| a.total_cmp(b))
-        .map(|(vertex, _)| vertex);
+    let mut at_triangle_mm = vec![f64::INFINITY; triangles.len()];
+    at_triangle_mm
+        .par_chunks_mut(STRIDE)
+        .enumerate()
+        .try_for_each(|(chunk, thickness)| {
+            for (triangle, thickness) in (chunk * STRIDE..).zip(thickness.iter_mut()) {
+                *thickness = at_triangle(tree, triangle as u32);
+            }
+            task.advance(thickness.len())
+        })?;
+    let at_vertices = vertices.iter().copied().zip(&at_vertex_mm);
+    let middles = triangles.iter().map(|t| middle(mesh.corners_mm(*t)));
+    let all = at_vertices.chain(middles.zip(&at_triangle_mm));
+    let finite = all.filter(|(_, thickness)| thickness.is_finite());
+    // The first of equal ones.
+    let thinnest = finite.min_by(|(_, a), (_, b)| a.total_cmp(b));
+    let thinnest = thinnest.map(|(place_mm, thickness_mm)| Thinnest {
+        thickness_mm: *thickness_mm,
+        place_mm,
+    });
     Ok(WallThickness {
         at_vertex_mm,
-        thinnest_vertex,
+        at_triangle_mm,
+        thinnest,
     })
+}
+
+/// The middle of a triangle.
+fn middle([a, b, c]: [Vector; 3]) -> Vector {
+    [0, 1, 2].map(|axis| (a[axis] + b[axis] + c[axis]) / 3.0)
+}
+
+/// The length of the ray from the middle of a triangle straight into the body.
+fn at_triangle(tree: &TriangleTree<'_>, triangle: u32) -> f64 {
+    let mesh = tree.mesh();
+    let triangle = mesh.triangles()[triangle as usize];
+    let corners = mesh.corners_mm(triangle);
+    let [a, b, c] = corners;
+    let Some(inward) = unit(cross(minus(c, a), minus(b, a))) else {
+        return f64::INFINITY;
+    };
+    let ray = Ray::new(middle(corners), inward, Start::Triangle(triangle));
+    let hit = first_hit(tree, &ray, f64::INFINITY);
+    let opposite = hit.filter(|hit| is_opposite(mesh, hit.triangle, inward));
+    opposite.map_or(f64::INFINITY, |hit| hit.distance_mm)
 }
 
 /// The least length of the rays from one vertex into the body.
@@ -110,7 +150,7 @@ fn at_vertex(tree: &TriangleTree<'_>, vertex: u32, inward: Vector) -> f64 {
     let origin = tree.mesh().vertices_mm()[vertex as usize];
     let mut least = f64::INFINITY;
     for direction in cone(inward) {
-        let ray = Ray::new(origin, direction, vertex);
+        let ray = Ray::new(origin, direction, Start::Vertex(vertex));
         if let Some(hit) = first_hit(tree, &ray, least)
             && is_opposite(tree.mesh(), hit.triangle, inward)
         {

@@ -1,37 +1,57 @@
 //! The first triangle on a ray.
 
-use crate::tree::{Bounds, TriangleTree};
+use super::{Bounds, TriangleTree};
 use crate::vector::{Vector, cross, dot, minus};
 
 /// Part of a triangle's size by which it is taken for larger, so that a ray through a common corner or
 /// edge does not slip between the neighbours by rounding.
 const SLACK: f64 = 1e-9;
 
-/// A ray from a vertex.
-pub(super) struct Ray {
+/// Where a ray begins: what is there is not looked at.
+#[derive(Clone, Copy)]
+pub(crate) enum Start {
+    /// At a vertex, and so at its triangles.
+    Vertex(u32),
+    /// On a triangle, and so beside its neighbours: at a crease they would be very near.
+    Triangle([u32; 3]),
+    /// Anywhere: all triangles are looked at.
+    Free,
+}
+
+impl Start {
+    fn is_at(self, triangle: [u32; 3]) -> bool {
+        match self {
+            Self::Vertex(vertex) => triangle.contains(&vertex),
+            Self::Free => false,
+            Self::Triangle(own) => own.iter().any(|vertex| triangle.contains(vertex)),
+        }
+    }
+}
+
+/// A ray from the surface.
+pub(crate) struct Ray {
     origin: Vector,
     direction: Vector,
     /// Length of the ray for a step along each axis; infinite for an axis it never moves along.
     per_axis: Vector,
-    /// Triangles at this vertex are not looked at.
-    vertex: u32,
+    start: Start,
 }
 
 /// Where a ray meets a triangle.
-pub(super) struct Hit {
-    pub(super) distance_mm: f64,
+pub(crate) struct Hit {
+    pub(crate) distance_mm: f64,
     /// The triangle's number.
-    pub(super) triangle: u32,
+    pub(crate) triangle: u32,
 }
 
 impl Ray {
     /// `direction` has the length 1.
-    pub(super) fn new(origin: Vector, direction: Vector, vertex: u32) -> Self {
+    pub(crate) fn new(origin: Vector, direction: Vector, start: Start) -> Self {
         Self {
             origin,
             direction,
             per_axis: direction.map(f64::recip),
-            vertex,
+            start,
         }
     }
 
@@ -73,8 +93,8 @@ impl Ray {
     }
 }
 
-/// The nearest triangle on the ray before `end` (mm) that has no corner at the ray's vertex.
-pub(super) fn first_hit(tree: &TriangleTree<'_>, ray: &Ray, end: f64) -> Option<Hit> {
+/// The nearest triangle on the ray before `end` (mm) that is not where the ray starts.
+pub(crate) fn first_hit(tree: &TriangleTree<'_>, ray: &Ray, end: f64) -> Option<Hit> {
     let nodes = tree.nodes();
     let mut nearest: Option<Hit> = None;
     let mut end = end;
@@ -97,7 +117,7 @@ pub(super) fn first_hit(tree: &TriangleTree<'_>, ray: &Ray, end: f64) -> Option<
         if node.right == 0 {
             for slot in &tree.slots()[node.first as usize..node.end as usize] {
                 let triangle = tree.mesh().triangles()[slot.triangle as usize];
-                if triangle.contains(&ray.vertex) || ray.enters(&slot.bounds, end).is_none() {
+                if ray.start.is_at(triangle) || ray.enters(&slot.bounds, end).is_none() {
                     continue;
                 }
                 if let Some(distance_mm) = ray.meets(tree.mesh().corners_mm(triangle))
@@ -150,7 +170,7 @@ mod tests {
             let tree = TriangleTree::new(&mesh, &Task::default()).unwrap();
             let directions = aims.iter().filter_map(|aim| unit(aim.map(f64::from)));
             for (vertex, direction) in (0..).zip(directions).take(corners.len()) {
-                let ray = Ray::new(mesh.vertices_mm()[vertex as usize], direction, vertex);
+                let ray = Ray::new(mesh.vertices_mm()[vertex as usize], direction, Start::Vertex(vertex));
                 let others = mesh.triangles().iter().filter(|t| !t.contains(&vertex));
                 let lengths = others.filter_map(|t| ray.meets(mesh.corners_mm(*t)));
                 let least = lengths.fold(end, f64::min);

@@ -1,0 +1,303 @@
+//! The part of a mesh that a cut can touch, closed again.
+//!
+//! 1. [`Neighbourhood::around`]: the triangles whose boxes touch a box, with their own numbers for vertices;
+//!    open where the box ends.
+//! 2. [`Part::of`]: what lies in a box, cut off at its sides, one after the other (`cut_off`), and closed
+//!    there.
+//!
+//! The lids are fans over the rims, which may overlap in their plane. That is enough: they lie outside
+//! of all that is cut, and what lies inside of a closed surface depends on its rims alone.
+
+use bonemesh_mesh::TriangleMesh;
+use bonemesh_task::{Cancelled, Task};
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
+
+use crate::vector::{Vector, minus, plus_scaled};
+
+/// Triangles looked at between two looks at the cancel switch.
+const STRIDE: usize = 1 << 14;
+
+/// A box along the axes (mm).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Space {
+    pub(super) low: Vector,
+    pub(super) high: Vector,
+}
+
+impl Space {
+    /// The box of some points; `None` without points.
+    pub(super) fn of(points: impl IntoIterator<Item = Vector>) -> Option<Self> {
+        points.into_iter().fold(None, |space: Option<Self>, point| {
+            let space = space.unwrap_or(Self {
+                low: point,
+                high: point,
+            });
+            Some(Self {
+                low: [0, 1, 2].map(|axis| space.low[axis].min(point[axis])),
+                high: [0, 1, 2].map(|axis| space.high[axis].max(point[axis])),
+            })
+        })
+    }
+
+    /// The box with so much more on all sides.
+    pub(super) fn wider(self, by_mm: f64) -> Self {
+        Self {
+            low: self.low.map(|low| low - by_mm),
+            high: self.high.map(|high| high + by_mm),
+        }
+    }
+
+    fn touches(&self, corners: [Vector; 3]) -> bool {
+        (0..3).all(|axis| {
+            corners.iter().any(|c| c[axis] >= self.low[axis])
+                && corners.iter().any(|c| c[axis] <= self.high[axis])
+        })
+    }
+}
+
+/// A part of a mesh.
+pub(super) struct Neighbourhood {
+    pub(super) vertices_mm: Vec<Vector>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// The number of each vertex in the whole mesh.
+    pub(super) of_mesh: Vec<u32>,
+}
+
+impl Neighbourhood {
+    /// The triangles of `mesh` whose boxes touch `space`, in their order.
+    pub(super) fn around(
+        mesh: &TriangleMesh,
+        space: &Space,
+        task: &Task,
+    ) -> Result<Self, Cancelled> {
+        let near = mesh
+            .triangles()
+            .par_chunks(STRIDE)
+            .map(|triangles| {
+                task.check()?;
+                let is_near = |t: &&[u32; 3]| space.touches(mesh.corners_mm(**t));
+                Ok(triangles.iter().filter(is_near).copied().collect())
+            })
+            .collect::<Result<Vec<Vec<[u32; 3]>>, Cancelled>>()?
+            .concat();
+        let mut numbers = FxHashMap::default();
+        let mut of_mesh = Vec::new();
+        let mut number = |vertex: u32| {
+            *numbers.entry(vertex).or_insert_with(|| {
+                of_mesh.push(vertex);
+                of_mesh.len() as u32 - 1
+            })
+        };
+        let triangles = near.iter().map(|t| t.map(&mut number)).collect();
+        let place = |vertex: &u32| mesh.vertices_mm()[*vertex as usize];
+        Ok(Self {
+            vertices_mm: of_mesh.iter().map(place).collect(),
+            triangles,
+            of_mesh,
+        })
+    }
+}
+
+/// A part of a body, closed.
+pub(super) struct Part {
+    pub(super) vertices_mm: Vec<Vector>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// The number of each vertex in the whole mesh; the others were made by cutting.
+    pub(super) of_mesh: Vec<Option<u32>>,
+}
+
+impl Part {
+    /// What of the closed `mesh` lies in `space`.
+    pub(super) fn of(mesh: &TriangleMesh, space: &Space, task: &Task) -> Result<Self, Cancelled> {
+        let mut vertices_mm = mesh.vertices_mm().to_vec();
+        let whole = vertices_mm.len() as u32;
+        let mut triangles = mesh.triangles().to_vec();
+        for axis in 0..3 {
+            for side in [
+                Side::above(axis, space.low[axis]),
+                Side::below(axis, space.high[axis]),
+            ] {
+                task.check()?;
+                triangles = cut_off(&mut vertices_mm, &triangles, side);
+            }
+        }
+        let mut numbers = FxHashMap::default();
+        let mut used: Vec<u32> = Vec::new();
+        let mut number = |vertex: u32| {
+            *numbers.entry(vertex).or_insert_with(|| {
+                used.push(vertex);
+                used.len() as u32 - 1
+            })
+        };
+        let triangles = triangles.iter().map(|t| t.map(&mut number)).collect();
+        Ok(Self {
+            triangles,
+            vertices_mm: used.iter().map(|v| vertices_mm[*v as usize]).collect(),
+            of_mesh: used.iter().map(|v| (*v < whole).then_some(*v)).collect(),
+        })
+    }
+}
+
+/// The side of a plane that is kept.
+#[derive(Clone, Copy)]
+struct Side {
+    axis: usize,
+    at_mm: f64,
+    is_above: bool,
+}
+
+impl Side {
+    fn above(axis: usize, at_mm: f64) -> Self {
+        Self {
+            axis,
+            at_mm,
+            is_above: true,
+        }
+    }
+
+    fn below(axis: usize, at_mm: f64) -> Self {
+        Self {
+            axis,
+            at_mm,
+            is_above: false,
+        }
+    }
+
+    /// Whether a place is kept; in the plane it is not.
+    fn keeps(self, place: Vector) -> bool {
+        let value = place[self.axis];
+        if self.is_above {
+            value > self.at_mm
+        } else {
+            value < self.at_mm
+        }
+    }
+}
+
+/// The triangles on one side of a plane, closed in it.
+fn cut_off(vertices_mm: &mut Vec<Vector>, triangles: &[[u32; 3]], side: Side) -> Vec<[u32; 3]> {
+    let is_kept: Vec<bool> = vertices_mm.iter().map(|v| side.keeps(*v)).collect();
+    let mut cuts: FxHashMap<[u32; 2], u32> = FxHashMap::default();
+    let mut cut = |vertices_mm: &mut Vec<Vector>, from: u32, to: u32| {
+        let edge = [from.min(to), from.max(to)];
+        *cuts.entry(edge).or_insert_with(|| {
+            let [a, b] = edge.map(|v| vertices_mm[v as usize]);
+            let part = (side.at_mm - a[side.axis]) / (b[side.axis] - a[side.axis]);
+            let mut place = plus_scaled(a, part, minus(b, a));
+            place[side.axis] = side.at_mm;
+            vertices_mm.push(place);
+            vertices_mm.len() as u32 - 1
+        })
+    };
+    let mut left = Vec::with_capacity(triangles.len());
+    // From where to where the lids' rims run.
+    let mut rims: Vec<[u32; 2]> = Vec::new();
+    for triangle in triangles {
+        let kept = triangle.map(|v| is_kept[v as usize]);
+        let count = kept.iter().filter(|kept| **kept).count();
+        if count == 3 {
+            left.push(*triangle);
+        }
+        let (1 | 2, Some(single)) = (count, kept.iter().position(|k| *k == (count == 1))) else {
+            continue;
+        };
+        // The corner that is alone on its side, and the others after it.
+        let [alone, next, last] = [0, 1, 2].map(|turn| triangle[(single + turn) % 3]);
+        let first_cut = cut(vertices_mm, alone, next);
+        let second_cut = cut(vertices_mm, alone, last);
+        if count == 1 {
+            left.push([alone, first_cut, second_cut]);
+            rims.push([second_cut, first_cut]);
+        } else {
+            left.push([first_cut, next, last]);
+            left.push([first_cut, last, second_cut]);
+            rims.push([first_cut, second_cut]);
+        }
+    }
+    close(&rims, &mut left);
+    left
+}
+
+/// Adds fans over closed rims.
+///
+/// As many rims end at a vertex as begin there, since the surface was closed; so whoever goes on comes
+/// back to where they began.
+fn close(rims: &[[u32; 2]], triangles: &mut Vec<[u32; 3]>) {
+    let mut after: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
+    for [from, to] in rims {
+        after.entry(*from).or_default().push(*to);
+    }
+    for [first, _] in rims {
+        let mut next_of = |vertex: u32| after.get_mut(&vertex).and_then(Vec::pop);
+        let Some(mut last) = next_of(*first) else {
+            continue;
+        };
+        while let Some(next) = next_of(last) {
+            if next == *first {
+                break;
+            }
+            triangles.push([*first, last, next]);
+            last = next;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bonemesh_mesh::check_topology;
+
+    /// A ball around the origin.
+    fn ball(radius: f64) -> TriangleMesh {
+        let (around, up) = (24_u32, 12_u32);
+        let mut vertices = vec![[0.0, 0.0, radius], [0.0, 0.0, -radius]];
+        for ring in 1..up {
+            for step in 0..around {
+                let [tilt, turn] = [
+                    std::f64::consts::PI * f64::from(ring) / f64::from(up),
+                    std::f64::consts::TAU * f64::from(step) / f64::from(around),
+                ];
+                vertices.push([
+                    radius * tilt.sin() * turn.cos(),
+                    radius * tilt.sin() * turn.sin(),
+                    radius * tilt.cos(),
+                ]);
+            }
+        }
+        let at = |ring: u32, step: u32| 2 + (ring - 1) * around + step % around;
+        let mut triangles = Vec::new();
+        for step in 0..around {
+            triangles.push([0, at(1, step), at(1, step + 1)]);
+            triangles.push([1, at(up - 1, step + 1), at(up - 1, step)]);
+            for ring in 1..up - 1 {
+                let [a, b] = [at(ring, step), at(ring, step + 1)];
+                let [c, d] = [at(ring + 1, step), at(ring + 1, step + 1)];
+                triangles.push([a, c, d]);
+                triangles.push([a, d, b]);
+            }
+        }
+        TriangleMesh::new(vertices, triangles).unwrap()
+    }
+
+    #[test]
+    fn a_part_of_a_ball_is_closed_and_has_the_volume_of_the_part() {
+        let task = Task::default();
+        let ball = ball(10.0);
+        let whole = check_topology(&ball, &task).unwrap().volume_mm3;
+        for (low, high, share) in [
+            ([-20.0; 3], [20.0; 3], 1.0),
+            ([0.0, -20.0, -20.0], [20.0; 3], 0.5),
+            ([0.0, 0.0, -20.0], [20.0; 3], 0.25),
+            ([0.0; 3], [20.0; 3], 0.125),
+        ] {
+            let space = Space { low, high };
+            let part = Part::of(&ball, &space, &task).unwrap();
+            let closed = TriangleMesh::new(part.vertices_mm, part.triangles).unwrap();
+            let topology = check_topology(&closed, &task).unwrap();
+            assert!(topology.watertight, "{topology:?}");
+            let expected = share * whole;
+            assert!((topology.volume_mm3 - expected).abs() < 1e-6 * whole);
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! The part of a cut that belongs to the patch, as a file would hold it.
+
+use bonemesh_mesh::{Sets, TriangleMesh, TriangleTree, check_topology, find_intersections};
+use bonemesh_task::Task;
+
+use super::boolean::{Body, Source};
+use crate::RoiError;
+
+/// What became of a cut.
+pub(super) enum Finished {
+    /// Closed, manifold, free of self-intersections.
+    Sound(TriangleMesh),
+    /// In 32-bit coordinates it is not.
+    Meets,
+}
+
+/// Keeps what hangs together with the patch. `is_front`: by the triangles of the bone, which of them are
+/// the patch's.
+///
+/// # Errors
+/// [`RoiError::NothingCut`] where nothing does, or the work was cancelled.
+pub(super) fn finished(
+    (cut, sources): (Body, Vec<Source>),
+    is_front: &[bool],
+    task: &Task,
+) -> Result<Finished, RoiError> {
+    let mut sets = Sets::new(cut.vertices_mm.len());
+    for &[a, b, c] in &cut.triangles {
+        sets.join(a, b);
+        sets.join(b, c);
+    }
+    let mut is_kept = vec![false; cut.vertices_mm.len()];
+    for (triangle, source) in cut.triangles.iter().zip(&sources) {
+        if matches!(source, Source::First(t) if is_front[*t as usize]) {
+            is_kept[sets.lowest(triangle[0]) as usize] = true;
+        }
+    }
+    let mut triangles = cut.triangles;
+    triangles.retain(|t| is_kept[sets.lowest(t[0]) as usize]);
+    if triangles.is_empty() {
+        return Err(RoiError::NothingCut);
+    }
+    let mesh = TriangleMesh::new(cut.vertices_mm, triangles)?.compacted();
+    let written = mesh.as_written(task)?;
+    let topology = check_topology(&written, task)?;
+    let is_closed = topology.watertight && topology.manifold && topology.degenerate_triangles == 0;
+    if !is_closed || topology.volume_mm3 <= 0.0 {
+        return Ok(Finished::Meets);
+    }
+    let tree = TriangleTree::new(&written, task)?;
+    let found = find_intersections(&tree, 1, task)?;
+    Ok(if found.count == 0 {
+        Finished::Sound(written)
+    } else {
+        Finished::Meets
+    })
+}

@@ -1,0 +1,195 @@
+//! Which part of the surface was meant.
+//!
+//! 1. Triangles with three selected corners, in pieces that share vertices (`pieces`).
+//! 2. `without_crumbs`: pieces that a rough lasso leaves beside the large ones are dropped, and so are those
+//!    behind the largest, which a lasso that sees through the bone picks up.
+//! 3. `without_gaps`: small holes in what is left are closed.
+
+use bonemesh_mesh::{Sets, TriangleMesh, TriangleTree};
+use bonemesh_task::Task;
+
+use super::crop::Neighbourhood;
+use crate::RoiError;
+use crate::vector::{Vector, cross, dot, length, minus, plus_scaled, unit};
+
+/// A piece with less than this part of the largest one's area is a crumb.
+const CRUMB: f64 = 0.03;
+/// A hole with less than this part of the patch's area is a gap, and so is one of less than so many mm2.
+const GAP: f64 = 0.02;
+const GAP_MM2: f64 = 2.0;
+/// Triangles of a piece that are looked at to tell whether it lies behind.
+const SAMPLES: usize = 32;
+
+/// The selected part of a neighbourhood's surface.
+pub(super) struct Patch {
+    /// For each triangle whether it belongs to the patch.
+    pub(super) has_triangle: Vec<bool>,
+    pub(super) area_mm2: f64,
+    /// Pieces that were dropped: crumbs, and those behind.
+    pub(super) dropped: usize,
+    /// Gaps that were closed.
+    pub(super) closed: usize,
+}
+
+impl Patch {
+    /// `is_selected`: by the neighbourhood's vertices; `is_all`: drops nothing.
+    ///
+    /// # Errors
+    /// [`RoiError::NoFace`] where no triangle is selected.
+    pub(super) fn of(
+        near: &Neighbourhood,
+        is_selected: &[bool],
+        is_all: bool,
+        task: &Task,
+    ) -> Result<Self, RoiError> {
+        let areas_mm2: Vec<f64> = near.triangles.iter().map(|t| near.area_mm2(*t)).collect();
+        let chosen = near.triangles.iter();
+        let chosen: Vec<bool> = chosen
+            .map(|t| t.iter().all(|v| is_selected[*v as usize]))
+            .collect();
+        let mut pieces = Pieces::of(near, &areas_mm2, |t| chosen[t]);
+        if pieces.areas_mm2.is_empty() {
+            return Err(RoiError::NoFace {
+                selected: is_selected.iter().filter(|s| **s).count(),
+            });
+        }
+        task.check()?;
+        let is_kept = if is_all {
+            vec![true; pieces.areas_mm2.len()]
+        } else {
+            pieces.without_crumbs(near, task)?
+        };
+        let dropped = is_kept.iter().filter(|kept| !**kept).count();
+        let is_of = |piece: &Option<u32>| piece.is_some_and(|piece| is_kept[piece as usize]);
+        let mut has_triangle: Vec<bool> = pieces.of_triangles.iter().map(is_of).collect();
+        let area = |has: &[bool]| -> f64 {
+            let areas = areas_mm2.iter().zip(has).filter(|(_, has)| **has);
+            areas.map(|(area, _)| area).sum()
+        };
+        let most_mm2 = GAP_MM2.max(GAP * area(&has_triangle));
+        pieces = Pieces::of(near, &areas_mm2, |t| !has_triangle[t]);
+        let mut is_beside = vec![false; near.vertices_mm.len()];
+        for vertex in corners(near, &has_triangle) {
+            is_beside[vertex as usize] = true;
+        }
+        let mut is_gap: Vec<bool> = pieces.areas_mm2.iter().map(|a| *a < most_mm2).collect();
+        for (piece, gap) in (0..).zip(&mut is_gap) {
+            let of_piece: Vec<bool> = pieces
+                .of_triangles
+                .iter()
+                .map(|p| *p == Some(piece))
+                .collect();
+            *gap = *gap && corners(near, &of_piece).any(|v| is_beside[v as usize]);
+        }
+        for (has, piece) in has_triangle.iter_mut().zip(&pieces.of_triangles) {
+            *has |= piece.is_some_and(|piece| is_gap[piece as usize]);
+        }
+        Ok(Self {
+            area_mm2: area(&has_triangle),
+            has_triangle,
+            dropped,
+            closed: is_gap.iter().filter(|gap| **gap).count(),
+        })
+    }
+}
+
+/// The corners of some of the triangles.
+fn corners<'a>(near: &'a Neighbourhood, has: &'a [bool]) -> impl Iterator<Item = u32> + 'a {
+    let triangles = near.triangles.iter().zip(has).filter(|(_, has)| **has);
+    triangles.flat_map(|(triangle, _)| *triangle)
+}
+
+impl Neighbourhood {
+    /// Twice the area of a triangle in the direction that it faces.
+    pub(super) fn facing(&self, triangle: [u32; 3]) -> Vector {
+        let [a, b, c] = triangle.map(|v| self.vertices_mm[v as usize]);
+        cross(minus(b, a), minus(c, a))
+    }
+
+    fn area_mm2(&self, triangle: [u32; 3]) -> f64 {
+        0.5 * length(self.facing(triangle))
+    }
+}
+
+/// Triangles in pieces that share vertices.
+struct Pieces {
+    /// The piece of each triangle that is in one.
+    of_triangles: Vec<Option<u32>>,
+    areas_mm2: Vec<f64>,
+}
+
+impl Pieces {
+    fn of(near: &Neighbourhood, areas_mm2: &[f64], is_in: impl Fn(usize) -> bool) -> Self {
+        let mut sets = Sets::new(near.vertices_mm.len());
+        for (_, &[a, b, c]) in near.triangles.iter().enumerate().filter(|(t, _)| is_in(*t)) {
+            sets.join(a, b);
+            sets.join(b, c);
+        }
+        let mut numbers = vec![None; near.vertices_mm.len()];
+        let mut areas = Vec::new();
+        let piece = |(triangle, corners): (usize, &[u32; 3])| {
+            let root = sets.lowest(corners[0]);
+            is_in(triangle).then(|| {
+                let number = *numbers[root as usize].get_or_insert_with(|| {
+                    areas.push(0.0);
+                    areas.len() as u32 - 1
+                });
+                areas[number as usize] += areas_mm2[triangle];
+                number
+            })
+        };
+        let of_triangles = near.triangles.iter().enumerate().map(piece).collect();
+        Self {
+            of_triangles,
+            areas_mm2: areas,
+        }
+    }
+
+    /// Which pieces are large and not behind the largest.
+    fn without_crumbs(&self, near: &Neighbourhood, task: &Task) -> Result<Vec<bool>, RoiError> {
+        let areas = self.areas_mm2.iter();
+        let largest_mm2 = areas.copied().fold(0.0, f64::max);
+        let largest = self.areas_mm2.iter().position(|a| *a >= largest_mm2);
+        let is_large = |area: &f64| *area >= CRUMB * largest_mm2;
+        let mut is_kept: Vec<bool> = self.areas_mm2.iter().map(is_large).collect();
+        if is_kept.iter().filter(|kept| **kept).count() < 2 {
+            return Ok(is_kept);
+        }
+        let largest = largest.map(|piece| piece as u32);
+        let triangles = near.triangles.iter().zip(&self.of_triangles);
+        let of_largest = triangles.filter(|(_, piece)| **piece == largest);
+        let of_largest: Vec<[u32; 3]> = of_largest.map(|(t, _)| *t).collect();
+        let outward = of_largest.iter().map(|t| near.facing(*t));
+        let outward = unit(outward.fold([0.0; 3], |sum, n| plus_scaled(sum, 1.0, n)));
+        let mesh = TriangleMesh::new(near.vertices_mm.clone(), of_largest)?;
+        let tree = TriangleTree::new(&mesh, task)?;
+        for (piece, kept) in (0..).zip(&mut is_kept) {
+            if *kept && Some(piece) != largest {
+                *kept = !self.is_behind(piece, near, &tree, outward);
+            }
+        }
+        Ok(is_kept)
+    }
+
+    /// Whether most of a piece lies behind a surface that faces `outward`, or faces the other way.
+    fn is_behind(
+        &self,
+        piece: u32,
+        near: &Neighbourhood,
+        tree: &TriangleTree<'_>,
+        outward: Vector,
+    ) -> bool {
+        let triangles = near.triangles.iter().zip(&self.of_triangles);
+        let own = triangles.filter(|(_, of)| **of == Some(piece));
+        let own: Vec<[u32; 3]> = own.map(|(t, _)| *t).collect();
+        let stride = own.len().div_ceil(SAMPLES);
+        let samples = own.iter().step_by(stride);
+        let is_hidden = |triangle: &&[u32; 3]| {
+            let [a, b, c] = triangle.map(|v| near.vertices_mm[v as usize]);
+            let middle = [0, 1, 2].map(|axis| (a[axis] + b[axis] + c[axis]) / 3.0);
+            dot(near.facing(**triangle), outward) < 0.0 || tree.is_met(middle, outward)
+        };
+        let hidden = samples.clone().filter(is_hidden).count();
+        2 * hidden > samples.count()
+    }
+}
