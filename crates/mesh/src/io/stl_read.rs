@@ -88,11 +88,18 @@ fn kind_of(head: &[u8], bytes: u64) -> Kind {
     Kind::Other(match claimed {
         None if bytes == 0 => "it is empty".into(),
         None => format!("{bytes} bytes are too few"),
-        Some(triangles) => format!(
-            "it is no text beginning with solid, and as a binary file of {triangles} triangles, as its \
-             header says, it would have {} bytes and not {bytes}",
-            HEAD + RECORD * u64::from(triangles),
-        ),
+        Some(triangles) => {
+            let holds = bytes.saturating_sub(HEAD) / RECORD;
+            let most = HEAD + RECORD * u64::from(triangles);
+            let wrong = if holds == u64::from(triangles) {
+                format!("has {} bytes too many", bytes - most)
+            } else {
+                format!("would hold {holds} triangles where its header says {triangles}")
+            };
+            format!(
+                "it is no text beginning with solid, and as a binary file of {bytes} bytes it {wrong}"
+            )
+        }
     })
 }
 
