@@ -13,14 +13,12 @@ mod solve;
 mod splat;
 
 use bonemesh_cloud::{NormalSettings, PointCloud, estimate_normals};
-use bonemesh_delaunay::DelaunayError;
 use bonemesh_mesh::TriangleMesh;
 use bonemesh_task::Task;
 use bonemesh_volume::Affine;
 
 use crate::SurfaceError;
 use crate::isosurface::{cut, surface};
-use crate::vector::{cross, dot, minus};
 use grid::Grid;
 use samples::{Sample, samples};
 use solve::solve;
@@ -31,8 +29,6 @@ const MIN_DEPTH: u32 = 3;
 const MAX_DEPTH: u32 = 8;
 /// Greatest scale; beyond, next to nothing of the grid is left for the points.
 const MAX_SCALE: f64 = 10.0;
-/// Points that are off a plane by less than this part of their extent are in it.
-const FLAT: f64 = 1e-9;
 
 /// How finely and how widely the function is solved for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,10 +81,6 @@ pub fn poisson(
     if !(1.0..=MAX_SCALE).contains(&settings.scale) {
         return Err(SurfaceError::Scale(settings.scale));
     }
-    if is_flat(cloud.points_mm()) {
-        let distinct = cloud.len();
-        return Err(DelaunayError::Coplanar { distinct }.into());
-    }
     let grid = Grid::around(cloud.points_mm(), settings.depth, settings.scale)
         .ok_or(SurfaceError::NoDistance)?;
     let normals = estimate_normals(cloud, settings.normals, task)?;
@@ -104,25 +96,6 @@ pub fn poisson(
     );
     let value = |[i, j, k]: [usize; 3]| function[(k * n + j) * n + i] - level;
     surface([n; 3], value, cut::linear, &affine, None, task)?.ok_or(SurfaceError::NothingEnclosed)
-}
-
-/// Whether all points lie in one plane, as those of a single slice do.
-fn is_flat(points_mm: &[[f64; 3]]) -> bool {
-    let Some(&first) = points_mm.first() else {
-        return true;
-    };
-    // The furthest from a point, from that line, and from that plane.
-    let furthest = |measure: &dyn Fn([f64; 3]) -> f64| {
-        let all = points_mm.iter().map(|point| minus(*point, first));
-        all.max_by(|a, b| measure(*a).total_cmp(&measure(*b)))
-            .unwrap_or_default()
-    };
-    let along = furthest(&|v| dot(v, v));
-    let across = |v: [f64; 3]| cross(along, v);
-    let beside = furthest(&|v| dot(across(v), across(v)));
-    let normal = across(beside);
-    let off = dot(furthest(&|v| dot(v, normal).abs()), normal).abs();
-    off <= FLAT * dot(normal, normal).sqrt() * dot(along, along).sqrt()
 }
 
 /// Mean of the function at the points, each counting as its piece of the surface.
