@@ -27,6 +27,9 @@ const MOST_NODES: f64 = 2e7;
 const LID_STEPS: f64 = 2.5;
 /// Nodes along a block's side.
 const BLOCK: usize = 8;
+/// How much faster than a place the nearest place of the patch moves, at most: below a curled patch it
+/// does so.
+const MOST_SLOPE: f64 = 3.0;
 
 /// What is cut, by depth below the patch (mm).
 #[derive(Clone, Copy, Debug)]
@@ -135,7 +138,13 @@ fn fill_block(
     let half = BLOCK as f64 / 2.0 * lattice.step_mm;
     let middle = lattice.place(first).map(|v| v + half);
     let around_mm = half * 3.0_f64.sqrt();
-    if lookup.see(middle, reach_mm + around_mm).is_none() {
+    let Some(seen) = lookup.see(middle, reach_mm + around_mm) else {
+        return;
+    };
+    let is_beyond = seen.depth_mm < depths.top_mm - around_mm
+        || seen.depth_mm > depths.bottom_mm + around_mm
+        || seen.inside_mm < -MOST_SLOPE * around_mm;
+    if is_beyond {
         return;
     }
     let slices = values.len() / (columns * rows);

@@ -32,7 +32,7 @@ use crate::{RoiError, ThicknessMm};
 
 /// Lattices that are tried.
 const TRIES: u32 = 12;
-/// How much more than the thickness (mm) is looked at around the selection.
+/// How far (mm) around the selection, and around what is cut, is looked at.
 const BESIDE_MM: f64 = 3.0;
 /// Parts of a step by which the lattice is shifted from try to try: multiples of these never come back.
 const SHIFTS: [f64; 3] = [
@@ -73,15 +73,14 @@ pub fn select_solid(
     let selection = &Selection::new(selected, mesh.vertices_mm().len())?;
     let place = |vertex: &u32| mesh.vertices_mm()[*vertex as usize];
     let space = Space::of(selection.indices().iter().map(place)).ok_or(RoiError::NoSelection)?;
-    let reach_mm = thickness.mm() + BESIDE_MM;
-    let near = Neighbourhood::around(mesh, &space.wider(reach_mm), task)?;
+    let near = Neighbourhood::around(mesh, &space.wider(2.0 * BESIDE_MM), task)?;
     let is_selected: Vec<bool> = near
         .of_mesh
         .iter()
         .map(|v| selection.contains(*v))
         .collect();
     let patch = Patch::of(&near, &is_selected, false, task)?;
-    let outline = Outline::of(&near, &patch, &is_selected, reach_mm, task)?;
+    let outline = Outline::of(&near, &patch, &is_selected, BESIDE_MM, task)?;
     let sheet = Sheet::of(&near, &outline)?;
     let step_mm = step_mm(patch.area_mm2, thickness.mm());
     let depths = Depths {
