@@ -134,10 +134,12 @@ def test_walls_are_as_thick_as_they_are():
     assert (abs(walls - 1.5) < 0.05).all()
     check = bonemesh.check(shell)
     assert check["printable"] and check["components"] == 2
-    assert check["thinnest_wall_mm"] == walls.min()
-    assert check["wall_5_percent_mm"] >= walls.min()
-    thinnest = shell.vertices[walls.argmin()].astype(float)
-    assert check["thinnest_wall_place_mm"] == thinnest.tolist()
+    # The middles of triangles are looked at, too: the facets are nearer to one another than the corners.
+    thinnest = check["thinnest_wall_mm"]
+    assert walls.min() - 0.02 < thinnest <= walls.min()
+    assert check["wall_5_percent_mm"] >= thinnest
+    radius = np.linalg.norm(check["thinnest_wall_place_mm"])
+    assert min(abs(radius - 20.0), abs(radius - 18.5)) < 0.1
     opened = bonemesh.Mesh(shell.vertices, shell.triangles[1:])
     assert bonemesh.check(opened)["thinnest_wall_mm"] is None
 
