@@ -43,6 +43,7 @@ pub(crate) fn are_pieces(
     let lower = match isosurface(volume, lower, task) {
         Ok(mesh) => mesh,
         Err(SurfaceError::Cancelled(cancelled)) => return Err(cancelled.into()),
+        // Without a surface at that threshold there is no table to know pieces by.
         Err(_) => return Ok(none()),
     };
     let mut table = Vec::new();

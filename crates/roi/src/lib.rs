@@ -2,7 +2,8 @@
 //!
 //! [`select_solid`] cuts the bone under the patch out: a closed 2-manifold without self-intersections,
 //! whose front are the mesh's own triangles and whose sides stand upright on the surface. Limits: the
-//! surface must be closed near the selection; on a rough one the sides are a little rough, too.
+//! surface must be closed near the selection, and its triangles smaller than the thickness and the
+//! patch's features; on a rough one the sides are a little rough, too.
 //!
 //! [`Method::Thesis`] finds the vertices of the mesh that lie behind the selection, slice by slice,
 //! and meshes them and the selection as a point cloud. Its limits are those of the published

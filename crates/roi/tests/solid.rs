@@ -4,11 +4,12 @@
 
 use std::collections::HashSet;
 use std::f64::consts::PI;
+use std::num::NonZeroUsize;
 
 use bonemesh_mesh::{TriangleMesh, TriangleTree, check_topology, find_intersections};
-use bonemesh_roi::{Solid, ThicknessMm, select_solid};
+use bonemesh_roi::{RoiError, Solid, ThicknessMm, select_solid};
 use bonemesh_surface::level_surface;
-use bonemesh_task::Task;
+use bonemesh_task::{Task, pool};
 use bonemesh_volume::Affine;
 
 const STEP_MM: f64 = 0.25;
@@ -165,4 +166,45 @@ fn a_plate_is_cut_straight_through_or_part_of_the_way() {
         let part = volume_mm3(&solid) / expected;
         assert!((part - 1.0).abs() < 0.01, "{thickness} mm: {part}");
     }
+}
+
+#[test]
+fn the_solid_does_not_depend_on_threads_or_on_the_order_of_the_selection() {
+    let shell = shell();
+    let mut patch = selected(&shell, |p| length(p) > 17.0 && p[1] > 16.0);
+    let cut = |patch: &[u32], threads| {
+        let pool = pool(NonZeroUsize::new(threads)).unwrap();
+        pool.install(|| solid(&shell, patch, 3.0))
+    };
+    let one = cut(&patch, 1);
+    assert_eq!(one, cut(&patch, 5));
+    patch.reverse();
+    patch.push(patch[0]);
+    assert_eq!(one, cut(&patch, 2));
+}
+
+#[test]
+fn what_cannot_be_cut_is_refused() {
+    let shell = shell();
+    let thickness = ThicknessMm::new(3.0).unwrap();
+    let cut = |mesh: &TriangleMesh, selected: &[u32]| {
+        select_solid(mesh, selected, thickness, &Task::default()).unwrap_err()
+    };
+    assert!(matches!(cut(&shell, &[]), RoiError::NoSelection));
+    assert!(matches!(cut(&shell, &[u32::MAX]), RoiError::Index { .. }));
+    let far = selected(&shell, |p| length(p) > 17.0 && p[0].abs() > 19.9);
+    let [first, last] = [far[0], far[far.len() - 1]];
+    assert!(matches!(
+        cut(&shell, &[first, last]),
+        RoiError::NoFace { selected: 2 }
+    ));
+    let patch = selected(&shell, |p| length(p) > 17.0 && p[2] > 17.0);
+    let lid = |t: &&[u32; 3]| !t.contains(&patch[patch.len() / 2]);
+    let open: Vec<[u32; 3]> = shell.triangles().iter().filter(lid).copied().collect();
+    let open = TriangleMesh::new(shell.vertices_mm().to_vec(), open).unwrap();
+    assert!(matches!(cut(&open, &patch), RoiError::Open));
+    let task = Task::default();
+    task.cancel().cancel();
+    let cancelled = select_solid(&shell, &patch, thickness, &task).unwrap_err();
+    assert!(matches!(cancelled, RoiError::Cancelled(_)));
 }

@@ -1,7 +1,7 @@
 //! The body that is cut out with: from just above the patch down to the thickness, with upright sides.
 //!
 //! 1. `Lattice::around`: a lattice around the patch, fine enough for its size and the thickness.
-//! 2. `depths`: how far each node is inside of the cutter, the least of the distances from its lid, its
+//! 2. `values`: how far each node is inside of the cutter, the least of the distances from its lid, its
 //!    bottom and its sides. Blocks of nodes that are far from the patch are passed over.
 //! 3. The surface where that is 0.
 

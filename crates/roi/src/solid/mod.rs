@@ -79,7 +79,7 @@ pub fn select_solid(
         .iter()
         .map(|v| selection.contains(*v))
         .collect();
-    let patch = Patch::of(&near, &is_selected, false, task)?;
+    let patch = Patch::of(&near, &is_selected, task)?;
     let outline = Outline::of(&near, &patch, &is_selected, BESIDE_MM, task)?;
     let sheet = Sheet::of(&near, &outline)?;
     let step_mm = step_mm(patch.area_mm2, thickness.mm());
@@ -87,7 +87,7 @@ pub fn select_solid(
         top_mm: -lid_mm(step_mm),
         bottom_mm: thickness.mm(),
     };
-    let space = Space::of(sheet.inside()).ok_or(RoiError::NothingCut)?;
+    let space = Space::of(sheet.around_patch()).ok_or(RoiError::NothingCut)?;
     let space = space.wider(thickness.mm().max(lid_mm(step_mm)) + step_mm);
     let lookup = sheet.lookup(task)?;
     let around = space.wider(BESIDE_MM);

@@ -1,9 +1,9 @@
 //! Which part of the surface was meant.
 //!
-//! 1. Triangles with three selected corners, in pieces that share vertices (`pieces`).
+//! 1. [`Pieces`]: triangles with three selected corners, in pieces that share vertices.
 //! 2. `without_crumbs`: pieces that a rough lasso leaves beside the large ones are dropped, and so are those
 //!    behind the largest, which a lasso that sees through the bone picks up.
-//! 3. `without_gaps`: small holes in what is left are closed.
+//! 3. `close_gaps`: small holes in what is left are closed.
 
 use bonemesh_mesh::{Sets, TriangleMesh, TriangleTree};
 use bonemesh_task::Task;
@@ -32,71 +32,66 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// `is_selected`: by the neighbourhood's vertices; `is_all`: drops nothing.
+    /// `is_selected`: by the neighbourhood's vertices.
     ///
     /// # Errors
     /// [`RoiError::NoFace`] where no triangle is selected.
     pub(super) fn of(
         near: &Neighbourhood,
         is_selected: &[bool],
-        is_all: bool,
         task: &Task,
     ) -> Result<Self, RoiError> {
         let areas_mm2: Vec<f64> = near.triangles.iter().map(|t| near.area_mm2(*t)).collect();
-        let chosen = near.triangles.iter();
-        let chosen: Vec<bool> = chosen
-            .map(|t| t.iter().all(|v| is_selected[*v as usize]))
-            .collect();
-        let mut pieces = Pieces::of(near, &areas_mm2, |t| chosen[t]);
+        let is_chosen = |t: usize| near.triangles[t].iter().all(|v| is_selected[*v as usize]);
+        let pieces = Pieces::of(near, &areas_mm2, is_chosen);
         if pieces.areas_mm2.is_empty() {
             return Err(RoiError::NoFace {
                 selected: is_selected.iter().filter(|s| **s).count(),
             });
         }
         task.check()?;
-        let is_kept = if is_all {
-            vec![true; pieces.areas_mm2.len()]
-        } else {
-            pieces.without_crumbs(near, task)?
-        };
-        let dropped = is_kept.iter().filter(|kept| !**kept).count();
+        let is_kept = pieces.without_crumbs(near, task)?;
         let is_of = |piece: &Option<u32>| piece.is_some_and(|piece| is_kept[piece as usize]);
         let mut has_triangle: Vec<bool> = pieces.of_triangles.iter().map(is_of).collect();
-        let area = |has: &[bool]| -> f64 {
-            let areas = areas_mm2.iter().zip(has).filter(|(_, has)| **has);
-            areas.map(|(area, _)| area).sum()
-        };
-        let most_mm2 = GAP_MM2.max(GAP * area(&has_triangle));
-        pieces = Pieces::of(near, &areas_mm2, |t| !has_triangle[t]);
-        let mut is_beside = vec![false; near.vertices_mm.len()];
-        for vertex in corners(near, &has_triangle) {
-            is_beside[vertex as usize] = true;
-        }
-        let mut is_gap: Vec<bool> = pieces.areas_mm2.iter().map(|a| *a < most_mm2).collect();
-        for (piece, gap) in (0..).zip(&mut is_gap) {
-            let of_piece: Vec<bool> = pieces
-                .of_triangles
-                .iter()
-                .map(|p| *p == Some(piece))
-                .collect();
-            *gap = *gap && corners(near, &of_piece).any(|v| is_beside[v as usize]);
-        }
-        for (has, piece) in has_triangle.iter_mut().zip(&pieces.of_triangles) {
-            *has |= piece.is_some_and(|piece| is_gap[piece as usize]);
-        }
+        let closed = close_gaps(near, &areas_mm2, &mut has_triangle);
         Ok(Self {
-            area_mm2: area(&has_triangle),
+            area_mm2: area_mm2(&areas_mm2, &has_triangle),
             has_triangle,
-            dropped,
-            closed: is_gap.iter().filter(|gap| **gap).count(),
+            dropped: is_kept.iter().filter(|kept| !**kept).count(),
+            closed,
         })
     }
 }
 
-/// The corners of some of the triangles.
-fn corners<'a>(near: &'a Neighbourhood, has: &'a [bool]) -> impl Iterator<Item = u32> + 'a {
-    let triangles = near.triangles.iter().zip(has).filter(|(_, has)| **has);
-    triangles.flat_map(|(triangle, _)| *triangle)
+/// The area of some of the triangles.
+fn area_mm2(areas_mm2: &[f64], has_triangle: &[bool]) -> f64 {
+    let areas = areas_mm2.iter().zip(has_triangle);
+    areas.filter(|(_, has)| **has).map(|(area, _)| area).sum()
+}
+
+/// Adds the triangles of small holes to a patch; gives how many holes these were.
+fn close_gaps(near: &Neighbourhood, areas_mm2: &[f64], has_triangle: &mut [bool]) -> usize {
+    let most_mm2 = GAP_MM2.max(GAP * area_mm2(areas_mm2, has_triangle));
+    let others = Pieces::of(near, areas_mm2, |t| !has_triangle[t]);
+    let mut is_of_patch = vec![false; near.vertices_mm.len()];
+    for (triangle, _) in near.triangles.iter().zip(&*has_triangle).filter(|t| *t.1) {
+        for vertex in triangle {
+            is_of_patch[*vertex as usize] = true;
+        }
+    }
+    // What is as small but touches no patch is a crumb of bone beside it.
+    let mut is_gap = vec![false; others.areas_mm2.len()];
+    for (triangle, piece) in near.triangles.iter().zip(&others.of_triangles) {
+        if let Some(piece) = piece
+            && triangle.iter().any(|v| is_of_patch[*v as usize])
+        {
+            is_gap[*piece as usize] = others.areas_mm2[*piece as usize] < most_mm2;
+        }
+    }
+    for (has, piece) in has_triangle.iter_mut().zip(&others.of_triangles) {
+        *has |= piece.is_some_and(|piece| is_gap[piece as usize]);
+    }
+    is_gap.iter().filter(|gap| **gap).count()
 }
 
 impl Neighbourhood {

@@ -60,12 +60,12 @@ impl Sheet {
         })
     }
 
-    /// The places of vertices inside of the outline.
-    pub(super) fn inside(&self) -> impl Iterator<Item = Vector> + '_ {
-        let vertices = self.mesh.vertices_mm().iter().zip(&self.inside_mm);
-        vertices
-            .filter(|(_, inside)| **inside > 0.0)
-            .map(|(v, _)| *v)
+    /// The corners of all triangles that are inside of the outline or crossed by it.
+    pub(super) fn around_patch(&self) -> impl Iterator<Item = Vector> + '_ {
+        let is_inside = |v: &u32| self.inside_mm[*v as usize] > 0.0;
+        let triangles = self.mesh.triangles().iter();
+        let crossed = triangles.filter(move |t| t.iter().any(is_inside));
+        crossed.flat_map(|t| self.mesh.corners_mm(*t))
     }
 
     /// The same sheet with its triangles by place.
