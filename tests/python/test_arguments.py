@@ -145,7 +145,7 @@ def test_an_unusable_thickness(mesh, patch, thickness):
 
 def test_an_unknown_region_method(mesh, patch):
     says = refusal(bonemesh.select_roi, mesh, patch, thickness_mm=5, method="magic")
-    assert "thesis" in says
+    assert "solid, thesis" in says
 
 
 @pytest.mark.parametrize("selected", [[], [3], [2**31]])

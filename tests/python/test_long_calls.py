@@ -1,6 +1,7 @@
 """Long calls: the GIL, progress, cancel, Ctrl-C, exceptions of callbacks."""
 
 import _thread
+import signal
 import threading
 import time
 from itertools import pairwise
@@ -132,6 +133,15 @@ def test_a_cancelled_call_leaves_no_file(ct_folder, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.fixture
+def heeded_ctrl_c():
+    """Where tests run in the background, a shell may have told them to ignore Ctrl-C."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("heeded_ctrl_c")
 def test_ctrl_c_stops_the_work_and_is_a_keyboard_interrupt():
     begun = time.perf_counter()
     threading.Timer(0.3, _thread.interrupt_main).start()

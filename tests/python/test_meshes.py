@@ -137,7 +137,7 @@ def test_unusable_files(tmp_path, content, error):
 
 
 def test_a_region_is_the_bone_behind_the_selection(mesh, patch):
-    region = bonemesh.select_roi(mesh, patch, thickness_mm=8)
+    region = bonemesh.select_roi(mesh, patch, thickness_mm=8, method="thesis")
     report = region.report
     assert report["selected"] == len(patch) and report["kept_points"] > 0
     assert report["thickness_mm"] == 8 and report["method"] == "thesis"
@@ -154,7 +154,7 @@ def test_a_region_is_the_bone_behind_the_selection(mesh, patch):
 
 
 def test_the_order_and_repetition_of_a_selection_do_not_matter(mesh, patch):
-    region = bonemesh.select_roi(mesh, patch, thickness_mm=8)
+    region = bonemesh.select_roi(mesh, patch, thickness_mm=8, method="thesis")
     repeated = np.concatenate([patch, patch[:5]])
     for selected in [
         patch.tolist(),
@@ -162,7 +162,7 @@ def test_the_order_and_repetition_of_a_selection_do_not_matter(mesh, patch):
         patch.astype(np.uint16),
         patch[::1].copy(),
     ]:
-        again = bonemesh.select_roi(mesh, selected, thickness_mm=8)
+        again = bonemesh.select_roi(mesh, selected, thickness_mm=8, method="thesis")
         assert (again.vertices == region.vertices).all()
         assert (again.triangles == region.triangles).all()
 
@@ -173,8 +173,8 @@ def test_a_region_of_the_file_is_the_region_of_the_mesh(mesh, patch, tmp_path):
     read = bonemesh.read_mesh(tmp_path / "mesh.stl")
     numbers = {tuple(v): n for n, v in enumerate(read.vertices.tolist())}
     selected = [numbers[tuple(v)] for v in mesh.vertices[patch].tolist()]
-    from_file = bonemesh.select_roi(read, selected, thickness_mm=8)
-    from_memory = bonemesh.select_roi(mesh, patch, thickness_mm=8)
+    from_file = bonemesh.select_roi(read, selected, thickness_mm=8, method="thesis")
+    from_memory = bonemesh.select_roi(mesh, patch, thickness_mm=8, method="thesis")
 
     def as_set(region):
         return {tuple(v) for v in region.vertices.tolist()}
@@ -187,7 +187,9 @@ def test_the_number_of_threads_changes_nothing(ct_folder, patch, mesh, tmp_path)
     for threads in (1, 3):
         rendered = bonemesh.render(ct_folder, method="alpha", threads=threads)
         rendered.save(tmp_path / f"mesh{threads}.stl")
-        region = bonemesh.select_roi(mesh, patch, thickness_mm=8, threads=threads)
+        region = bonemesh.select_roi(
+            mesh, patch, thickness_mm=8, method="thesis", threads=threads
+        )
         region.save(tmp_path / f"region{threads}.stl")
     for name in ("mesh", "region"):
         one = (tmp_path / f"{name}1.stl").read_bytes()

@@ -66,6 +66,15 @@ pub(crate) fn named(methods: &[Method]) -> String {
     names.join(" or ")
 }
 
+/// What is said of a choice that only solids have.
+pub(crate) fn not_for_region(choice: &'static str, method: bonemesh_roi::Method) -> Error {
+    Error::NotForMethod {
+        choice,
+        method: method.name(),
+        instead: "`solid`".into(),
+    }
+}
+
 /// What is said where only voxels would do and there is a cloud.
 ///
 /// # Errors

@@ -82,6 +82,11 @@ pub enum Error {
         /// The methods that have it.
         instead: String,
     },
+    /// A clearance without a plate.
+    #[error(
+        "a clearance is the gap under a plate; leave it out, or choose the direction `outward`"
+    )]
+    NoPlate,
     /// No island is as large as asked for.
     #[error("no island is that large, the largest has {largest_mm3:.3} mm3; ask for less")]
     NoIslandLeft {
@@ -125,7 +130,10 @@ pub enum Error {
 impl Error {
     /// Whether choices cannot go together, whatever the data.
     pub fn is_of_choices(&self) -> bool {
-        matches!(self, Self::NotForMethod { .. } | Self::NoVoxels)
+        matches!(
+            self,
+            Self::NotForMethod { .. } | Self::NoVoxels | Self::NoPlate
+        )
     }
 
     /// Whether the work was stopped on request, in whichever step.

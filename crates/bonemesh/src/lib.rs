@@ -39,10 +39,12 @@ mod error;
 mod left_out;
 mod memory;
 mod metal;
+mod mirror;
 mod of_cloud;
 mod panics;
 mod picture;
 mod region;
+mod region_report;
 mod render;
 mod report;
 mod settings;
@@ -55,13 +57,13 @@ pub use after_care::{AfterCare, AfterCareReport, Cavities, Holes, LeftHole, MOST
 pub use check::{Checked, Place, PrintCheck, check, check_walls, wall_thickness};
 pub use error::Error;
 pub use metal::MetalReport;
+pub use mirror::{ChosenPlane, PlaneChoice, PlaneReport};
 pub use panics::hush_foreign_panics;
 pub use picture::{check_picture_target, write_histogram};
-pub use region::{RegionRequest, RegionResult, select_roi};
+pub use region::{Mirror, RegionRequest, RegionResult, select_roi};
+pub use region_report::{RegionReport, SolidReport, ThesisReport};
 pub use render::{Rendered, mesh_cloud, point_cloud, render, render_volume};
-pub use report::{
-    CheckReport, LeftOutIslands, RegionReport, RenderReport, Seconds, check as check_topology,
-};
+pub use report::{CheckReport, LeftOutIslands, RenderReport, Seconds, check as check_topology};
 pub use settings::{AlphaRule, Method, Sampling, Settings};
 pub use source::{Contents, Reading, Source};
 pub use thresholds::{
@@ -77,16 +79,19 @@ pub use bonemesh_delaunay::{DelaunayError, Points, Tetrahedra, tetrahedralize};
 pub use bonemesh_dicom::{DicomError, Gap, LeftOut, SeriesChoice, SeriesReport};
 pub use bonemesh_mesh::{
     Decimated, Decimation, HoleLeft, HoleLimits, HoleReason, HolesFilled, Intersection,
-    Intersections, Islands, Kept, MeshError, RemovedPart, Smoothed, TriangleMesh, TriangleTree,
-    check_target, decimate, fill_cavities, fill_holes, find_intersections, keep_islands, read_mesh,
-    smooth, write_mesh,
+    Intersections, Islands, Kept, MeshError, Plane, RemovedPart, Smoothed, TriangleMesh,
+    TriangleTree, check_target, decimate, fill_cavities, fill_holes, find_intersections,
+    keep_islands, read_mesh, smooth, write_mesh,
 };
 pub use bonemesh_metal::{Metal, MetalError, Streaks, damp_metal, find_metal};
 pub use bonemesh_phantom::{
     Phantom, PhantomError, ScanSettings, WrittenPhantom, model_images, scan as scan_phantom,
     write_phantom,
 };
-pub use bonemesh_roi::{Method as RoiMethod, RoiError, ThicknessMm};
+pub use bonemesh_roi::{
+    ClearanceMm, Direction, LocalThickness, Method as RoiMethod, RoiError, Symmetry, ThicknessMm,
+    local_thickness, symmetry_plane,
+};
 pub use bonemesh_segment::{
     CannySettings, Components, Connectivity, EdgeThreshold, HuThreshold, LocalThreshold, Mask,
     SegmentError, Suggestion, Suggestions, ThresholdChoice, ThresholdFinder, ThresholdPreset,

@@ -1,7 +1,6 @@
 //! What is said of a result: plain values with units in their names, ready for JSON.
 
 use bonemesh_mesh::{Island, Topology, TriangleMesh, check_topology};
-use bonemesh_roi::Region;
 use bonemesh_task::Task;
 use serde::Serialize;
 
@@ -163,66 +162,6 @@ impl RenderReport {
         self.seconds.write = seconds;
         self.seconds.total += seconds;
         self.peak_mib = peak_mib();
-    }
-}
-
-/// What is said of a region of interest.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RegionReport {
-    /// Version of this program.
-    pub version: &'static str,
-    /// Name of the method.
-    pub method: &'static str,
-    /// Thickness asked for.
-    pub thickness_mm: f64,
-    /// Distinct selected vertices.
-    pub selected: usize,
-    /// Points found behind the selection.
-    pub kept_points: usize,
-    /// Largest circumradius kept.
-    pub alpha_mm: f64,
-    /// Unit normal along which the selection was projected.
-    pub normal: [f64; 3],
-    /// Vertices of the region.
-    pub vertices: usize,
-    /// Triangles of the region.
-    pub triangles: usize,
-    /// Closed: every edge has as many triangles running along it one way as the other.
-    pub watertight: bool,
-    /// No edge has more than two triangles, no vertex more than one fan of them.
-    pub manifold: bool,
-    /// Parts of the mesh that do not touch.
-    pub components: usize,
-    /// Volume inside the region.
-    pub volume_mm3: f64,
-    /// Seconds that it took.
-    pub seconds: f64,
-}
-
-impl RegionReport {
-    pub(crate) fn new(
-        region: &Region,
-        method: &'static str,
-        thickness_mm: f64,
-        check: &CheckReport,
-        seconds: f64,
-    ) -> Self {
-        Self {
-            version: VERSION,
-            method,
-            thickness_mm,
-            selected: region.selected,
-            kept_points: region.kept_points,
-            alpha_mm: region.alpha_mm,
-            normal: region.normal,
-            vertices: check.vertices,
-            triangles: check.triangles,
-            watertight: check.watertight,
-            manifold: check.manifold,
-            components: check.components,
-            volume_mm3: region.volume_mm3,
-            seconds,
-        }
     }
 }
 

@@ -32,6 +32,11 @@ pub enum MeshError {
     /// More vertices than an index can name.
     #[error("{0} vertices are more than 32-bit indices can name (4,294,967,295); split the mesh")]
     TooManyVertices(usize),
+    /// Numbers or places that make no plane.
+    #[error(
+        "this makes no plane; give a normal that is not 0, or three places that are not in a line"
+    )]
+    NoPlane,
     /// The file's extension names no format we know.
     #[error("{} ends in none of .stl, .ply, .obj, .3mf; give the file one of these extensions", path.display())]
     UnknownExtension {

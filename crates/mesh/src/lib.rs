@@ -57,6 +57,7 @@ mod io;
 mod merge;
 mod mesh;
 mod parts;
+mod plane;
 mod smooth;
 mod stars;
 mod thickness;
@@ -76,7 +77,8 @@ pub use parts::{
     Island, Islands, Kept, Nesting, RemovedPart, check_nesting, fill_cavities, keep_islands,
     take_islands,
 };
+pub use plane::Plane;
 pub use smooth::{Smoothed, smooth};
-pub use thickness::{Thinnest, WallThickness, wall_thickness};
+pub use thickness::{Thinnest, WallThickness, wall_thickness, wall_thickness_at};
 pub use topology::{Sets, Topology, check_topology};
 pub use tree::{Nearest, TriangleTree};

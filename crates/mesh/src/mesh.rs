@@ -51,6 +51,14 @@ impl TriangleMesh {
         })
     }
 
+    /// Joins what is known to be sound.
+    pub(crate) fn from_sound_parts(vertices_mm: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Self {
+        Self {
+            vertices_mm,
+            triangles,
+        }
+    }
+
     /// Vertices in mm.
     pub fn vertices_mm(&self) -> &[[f64; 3]] {
         &self.vertices_mm

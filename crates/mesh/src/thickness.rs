@@ -125,6 +125,29 @@ pub fn wall_thickness(tree: &TriangleTree<'_>, task: &Task) -> Result<WallThickn
     })
 }
 
+/// The same at some of the vertices (mm), in their order.
+///
+/// # Errors
+/// [`MeshError::Cancelled`]
+pub fn wall_thickness_at(
+    tree: &TriangleTree<'_>,
+    vertices: &[u32],
+    task: &Task,
+) -> Result<Vec<f64>, MeshError> {
+    task.begin("wall thickness", vertices.len());
+    let normals = inward_normals(tree.mesh(), task)?;
+    let thickness = |vertex: &u32| {
+        let inward = unit(normals[*vertex as usize]);
+        inward.map_or(f64::INFINITY, |inward| at_vertex(tree, *vertex, inward))
+    };
+    let chunks = vertices.par_chunks(STRIDE).map(|vertices| {
+        task.advance(vertices.len())?;
+        Ok(vertices.iter().map(thickness).collect())
+    });
+    let chunks: Result<Vec<Vec<f64>>, Cancelled> = chunks.collect();
+    Ok(chunks?.concat())
+}
+
 /// The middle of a triangle.
 fn middle([a, b, c]: [Vector; 3]) -> Vector {
     [0, 1, 2].map(|axis| (a[axis] + b[axis] + c[axis]) / 3.0)

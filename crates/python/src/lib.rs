@@ -19,6 +19,7 @@ mod edges;
 mod errors;
 mod lattice;
 mod mesh;
+mod mirror;
 mod options;
 mod phantom;
 mod region;
@@ -53,9 +54,11 @@ mod _native {
     #[pymodule_export]
     use crate::mesh::{Mesh, read_mesh};
     #[pymodule_export]
+    use crate::mirror::{mirror, symmetry_plane};
+    #[pymodule_export]
     use crate::phantom::{phantom, write_phantom};
     #[pymodule_export]
-    use crate::region::select_roi;
+    use crate::region::{local_thickness, select_roi};
     #[pymodule_export]
     use crate::render::{methods, render};
     #[pymodule_export]

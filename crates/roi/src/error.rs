@@ -14,8 +14,16 @@ pub enum RoiError {
     /// The thickness is no depth.
     #[error("the thickness is {0} mm; give a length above 0 mm")]
     Thickness(f64),
+    /// The clearance is no gap.
+    #[error("the clearance is {0} mm; give a length from 0 to 20 mm")]
+    Clearance(f64),
+    /// No direction has this name.
+    #[error(
+        "there is no direction {0:?}; write normal, through, outward or three numbers X,Y,Z that are not all 0"
+    )]
+    Direction(String),
     /// No method has this name.
-    #[error("there is no region method {0:?}; the methods are: thesis")]
+    #[error("there is no region method {0:?}; the methods are: solid, thesis")]
     UnknownMethod(String),
     /// Nothing is selected.
     #[error("no vertex is selected; select a patch of the outer surface first")]
@@ -75,6 +83,14 @@ pub enum RoiError {
         /// How many vertices are selected.
         selected: usize,
     },
+    /// The selection is too narrow for a body of its own.
+    #[error(
+        "the selected patch of {area_mm2:.2} mm2 is too narrow to cut anything out; select more"
+    )]
+    TooSmall {
+        /// Its area.
+        area_mm2: f64,
+    },
     /// The surface is open where it is to be cut.
     #[error(
         "the surface is open near the selection, so it has no inside to cut out; fill its holes first (bonemesh repair --fill-holes all)"
@@ -98,6 +114,16 @@ pub enum RoiError {
         "the solid cannot be cut out ({0}); check the surface near the selection (bonemesh check)"
     )]
     Cut(&'static str),
+    /// Nothing lies where the mirror shows the selection.
+    #[error(
+        "the other side has no bone where the mirror shows the selection; check the plane of symmetry, or give another"
+    )]
+    NoCounterpart,
+    /// No plane of symmetry follows from the mesh.
+    #[error(
+        "no plane of symmetry follows from a mesh without area; give the plane by numbers or three points"
+    )]
+    NoSymmetry,
     /// The mesh does not do.
     #[error(transparent)]
     Mesh(MeshError),

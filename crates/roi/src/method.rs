@@ -9,18 +9,21 @@ use crate::RoiError;
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Method {
-    /// The thesis's: slice by slice along one normal, meshed as a point cloud.
+    /// The bone under the patch, cut out as a closed solid.
     #[default]
+    Solid,
+    /// The thesis's: slice by slice along one normal, meshed as a point cloud.
     Thesis,
 }
 
 impl Method {
     /// Every method.
-    pub const ALL: [Self; 1] = [Self::Thesis];
+    pub const ALL: [Self; 2] = [Self::Solid, Self::Thesis];
 
     /// Its name in commands and reports.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Solid => "solid",
             Self::Thesis => "thesis",
         }
     }
@@ -53,6 +56,6 @@ mod tests {
             assert_eq!(method.to_string().parse::<Method>().unwrap(), method);
         }
         let error = "hollow".parse::<Method>().unwrap_err().to_string();
-        assert!(error.contains("hollow") && error.contains("thesis"));
+        assert!(error.contains("hollow") && error.contains("solid, thesis"));
     }
 }

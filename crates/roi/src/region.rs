@@ -1,4 +1,4 @@
-//! From a selection to its region, whichever the method.
+//! From a selection to its region by the thesis's method.
 
 use bonemesh_cloud::{PointCloud, mean_neighbour_distance};
 use bonemesh_mesh::TriangleMesh;
@@ -6,7 +6,7 @@ use bonemesh_surface::{AlphaSurface, alpha_surface};
 use bonemesh_task::Task;
 
 use crate::selection::Selection;
-use crate::{Method, RoiError, ThicknessMm, thesis};
+use crate::{RoiError, ThicknessMm, thesis};
 
 /// Neighbours over which alpha is averaged, the point itself included, as for whole clouds.
 const NEIGHBOURS: usize = 100;
@@ -34,7 +34,7 @@ pub struct Region {
 ///
 /// Selected vertices may repeat and come in any order; the result does not depend on it, nor on
 /// the number of threads. The vertices of the region are vertices of the mesh, unmoved. Triangles
-/// of the mesh play no part in method `thesis`.
+/// of the mesh play no part.
 ///
 /// # Errors
 /// [`RoiError`]: nothing or one vertex selected, an index the mesh does not have, no normal, a mesh
@@ -43,13 +43,10 @@ pub fn select_region(
     mesh: &TriangleMesh,
     selected: &[u32],
     thickness: ThicknessMm,
-    method: Method,
     task: &Task,
 ) -> Result<Region, RoiError> {
     let selection = Selection::new(selected, mesh.vertices_mm().len())?;
-    let behind = match method {
-        Method::Thesis => thesis::find_behind(mesh, &selection, thickness, task)?,
-    };
+    let behind = thesis::find_behind(mesh, &selection, thickness, task)?;
     if behind.kept.is_empty() {
         return Err(RoiError::NothingBehind {
             thickness_mm: thickness.mm(),

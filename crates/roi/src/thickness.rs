@@ -1,4 +1,4 @@
-//! How deep a region reaches.
+//! Lengths that a user gives.
 
 use crate::RoiError;
 
@@ -25,6 +25,38 @@ impl ThicknessMm {
     }
 }
 
+/// The gap between the bone and a plate that lies on it, in mm: 0 to 20.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct ClearanceMm(f64);
+
+impl ClearanceMm {
+    const LARGEST_MM: f64 = 20.0;
+
+    /// A gap of `mm`.
+    ///
+    /// # Errors
+    /// [`RoiError::Clearance`] when it is negative, above 20 mm or no number.
+    pub fn new(mm: f64) -> Result<Self, RoiError> {
+        if (0.0..=Self::LARGEST_MM).contains(&mm) {
+            Ok(Self(mm))
+        } else {
+            Err(RoiError::Clearance(mm))
+        }
+    }
+
+    /// The gap in mm.
+    pub fn mm(self) -> f64 {
+        self.0
+    }
+}
+
+impl Default for ClearanceMm {
+    /// 0.2 mm, which a printed guide needs to slip on.
+    fn default() -> Self {
+        Self(0.2)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -36,5 +68,14 @@ mod tests {
             assert!(matches!(error, RoiError::Thickness(_)), "{mm}");
         }
         assert!((ThicknessMm::new(5.0).unwrap().mm() - 5.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_clearance_may_be_nothing_but_neither_negative_nor_huge() {
+        for mm in [-0.1, 20.1, f64::NAN, f64::INFINITY] {
+            let error = ClearanceMm::new(mm).unwrap_err();
+            assert!(matches!(error, RoiError::Clearance(_)), "{mm}");
+        }
+        assert!(ClearanceMm::new(0.0).unwrap() < ClearanceMm::default());
     }
 }

@@ -1,7 +1,7 @@
 //! Whole regions from meshes made of slices, and selections that cannot give one.
 
 use bonemesh_mesh::{TriangleMesh, check_topology};
-use bonemesh_roi::{Method, Region, RoiError, ThicknessMm, select_region};
+use bonemesh_roi::{Region, RoiError, ThicknessMm, select_region};
 use bonemesh_task::Task;
 
 type Point = [f64; 3];
@@ -42,7 +42,7 @@ fn patch(points: &[Point], middle: Point, towards: [f64; 2]) -> Vec<u32> {
 fn region(points: &[Point], selected: &[u32], thickness_mm: f64) -> Result<Region, RoiError> {
     let mesh = TriangleMesh::new(points.to_vec(), vec![]).expect("points are finite");
     let thickness = ThicknessMm::new(thickness_mm)?;
-    select_region(&mesh, selected, thickness, Method::Thesis, &Task::default())
+    select_region(&mesh, selected, thickness, &Task::default())
 }
 
 #[test]
@@ -141,6 +141,6 @@ fn a_cancelled_search_says_so() {
     let task = Task::default();
     task.cancel().cancel();
     let thickness = ThicknessMm::new(5.0).unwrap();
-    let error = select_region(&mesh, &selected, thickness, Method::Thesis, &task).unwrap_err();
+    let error = select_region(&mesh, &selected, thickness, &task).unwrap_err();
     assert!(matches!(error, RoiError::Cancelled(_)));
 }

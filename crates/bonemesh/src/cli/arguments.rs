@@ -14,7 +14,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use super::after_care::{AfterCareArguments, Repair};
 use super::histogram::HistogramArguments;
 use super::phantom::PhantomArguments;
-use super::roi::Roi;
+use super::roi::{Mirror, Roi};
 use super::surface::{AlphaChoice, StudyArguments};
 use crate::settings::{AlphaRule, Method, Sampling, Settings};
 
@@ -43,6 +43,8 @@ pub(super) enum Command {
     Mesh(MeshArguments),
     /// Take the region under selected vertices out of a mesh.
     Roi(Roi),
+    /// Mirror a mesh in a plane, or in its own plane of symmetry.
+    Mirror(Mirror),
     /// Check whether a mesh can be printed: closed, manifold, no self-intersections, thinnest wall.
     Check(Check),
     /// Care for a mesh: fill holes, take islands away, fill cavities, smooth, take triangles away.

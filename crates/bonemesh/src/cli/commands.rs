@@ -13,9 +13,9 @@ use serde_json::json;
 use super::arguments::{Check, CloudArguments, Command, Info, MeshArguments, Render};
 use super::output::Answer;
 use super::phantom::PhantomArguments;
-use super::roi::Roi;
+use super::roi::{Mirror, Roi};
 use super::{after_care, histogram, text};
-use crate::region::{RegionRequest, select_roi};
+use crate::region::select_roi;
 use crate::render::{Rendered, mesh_cloud, point_cloud, render};
 use crate::source::{Reading, Source};
 use crate::thresholds::choose_threshold;
@@ -33,6 +33,7 @@ pub(super) fn run(command: &Command, task: &Task) -> Result<Answer, Error> {
         Command::Cloud(arguments) => run_cloud(arguments, task),
         Command::Mesh(arguments) => run_mesh(arguments, task),
         Command::Roi(arguments) => run_roi(arguments, task),
+        Command::Mirror(arguments) => run_mirror(arguments, task),
         Command::Check(arguments) => run_check(arguments, task),
         Command::Repair(arguments) => after_care::run(arguments, task),
         Command::Phantom(arguments) => run_phantom(arguments, task),
@@ -117,15 +118,23 @@ fn run_roi(arguments: &Roi, task: &Task) -> Result<Answer, Error> {
         (Some(file), None) => read_selection(file)?,
         (None, None) => Vec::new(),
     };
-    let request = RegionRequest {
-        thickness: arguments.thickness,
-        method: arguments.method,
-        threads: arguments.threads,
-    };
-    let region = select_roi(&mesh, &selected, &request, task)?;
+    let region = select_roi(&mesh, &selected, &arguments.request(), task)?;
     write_mesh(&arguments.output, &region.mesh, task)?;
     let text = text::region(&region.report, &arguments.output);
     Ok(Answer::new(&region.report, text).with("output", arguments.output.to_string_lossy()))
+}
+
+fn run_mirror(arguments: &Mirror, task: &Task) -> Result<Answer, Error> {
+    bonemesh_mesh::check_target(&arguments.output)?;
+    let mesh = read_mesh(&arguments.mesh, task)?;
+    let whole = match &arguments.of {
+        Some(file) => &read_mesh(file, task)?,
+        None => &mesh,
+    };
+    let chosen = arguments.plane.choose(whole, arguments.threads, task)?;
+    write_mesh(&arguments.output, &mesh.mirrored(&chosen.plane), task)?;
+    let text = text::mirrored(&chosen.report, &arguments.output);
+    Ok(Answer::new(&chosen.report, text).with("output", arguments.output.to_string_lossy()))
 }
 
 fn run_check(arguments: &Check, task: &Task) -> Result<Answer, Error> {

@@ -1,14 +1,16 @@
-//! What `roi` is told.
+//! What `roi` and `mirror` are told.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::str::FromStr;
 
 use bonemesh_mesh::TriangleMesh;
-use bonemesh_roi::{Method as RoiMethod, ThicknessMm};
+use bonemesh_roi::{ClearanceMm, Direction, Method as RoiMethod, ThicknessMm};
 use clap::Args;
 
 use super::arguments::{count, mesh_file, number};
+use crate::mirror::PlaneChoice;
+use crate::region::{Mirror as Mirrored, RegionRequest};
 
 #[derive(Debug, Args)]
 pub(super) struct Roi {
@@ -16,15 +18,84 @@ pub(super) struct Roi {
     pub(super) mesh: PathBuf,
     #[command(flatten)]
     pub(super) selection: Selection,
-    /// How deep the region reaches below the selection, in mm.
+    /// How deep the region reaches below the selection, or how thick a plate is, in mm.
     #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = thickness)]
-    pub(super) thickness: ThicknessMm,
+    thickness: ThicknessMm,
     /// Mesh file to write (.stl, .ply, .obj, .3mf).
     #[arg(short, long, value_parser = mesh_file())]
     pub(super) output: PathBuf,
-    /// How the region is found: thesis.
-    #[arg(long, default_value = "thesis")]
-    pub(super) method: RoiMethod,
+    /// How the region is found: solid, cut out of the bone; or thesis, slice by slice along one normal.
+    #[arg(long, default_value = "solid")]
+    method: RoiMethod,
+    /// Which way a solid is cut: normal, along the surface's own normals to the far side of the bone;
+    /// through, straight through all that lies behind; outward, the plate that lies on the bone; or
+    /// X,Y,Z, straight along this direction to the far side.
+    #[arg(
+        long,
+        default_value = "normal",
+        value_name = "normal|through|outward|X,Y,Z",
+        allow_negative_numbers = true
+    )]
+    direction: Direction,
+    /// The gap between bone and plate, in mm, from 0 to 20; 0.2 if none is given.
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = clearance)]
+    clearance: Option<ClearanceMm>,
+    /// Take selected pieces, too, that lie hidden behind others.
+    #[arg(long)]
+    hidden: bool,
+    /// Take what lies on the other side of this plane in place of the selection: auto, the bone's own
+    /// plane of symmetry; across the patient's x, y or z, through the middle of the mesh; the places p
+    /// with N · p = D; or through three places X,Y,Z;X,Y,Z;X,Y,Z.
+    #[arg(
+        long,
+        value_name = "auto|x|y|z|NX,NY,NZ,D",
+        allow_negative_numbers = true
+    )]
+    mirror: Option<PlaneChoice>,
+    /// Put what was taken from the other side where the selection is, as the template for an implant.
+    #[arg(long, requires = "mirror")]
+    mirror_back: bool,
+    /// Worker threads; the result does not depend on it.
+    #[arg(long, allow_negative_numbers = true, value_parser = count)]
+    threads: Option<NonZeroUsize>,
+}
+
+impl Roi {
+    pub(super) fn request(&self) -> RegionRequest {
+        RegionRequest {
+            thickness: self.thickness,
+            method: self.method,
+            direction: self.direction,
+            clearance: self.clearance.unwrap_or_default(),
+            with_hidden: self.hidden,
+            mirror: self.mirror.map(|plane| Mirrored {
+                plane,
+                back: self.mirror_back,
+            }),
+            threads: self.threads,
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Mirror {
+    /// Mesh file (.stl, .ply, .obj, .3mf).
+    pub(super) mesh: PathBuf,
+    /// The plane: auto, the mesh's own plane of symmetry; x, y or z, across the patient's axis through the
+    /// middle of the mesh; the places p with N · p = D; or through three places X,Y,Z;X,Y,Z;X,Y,Z.
+    #[arg(
+        long,
+        default_value = "auto",
+        value_name = "auto|x|y|z|NX,NY,NZ,D",
+        allow_negative_numbers = true
+    )]
+    pub(super) plane: PlaneChoice,
+    /// Mesh file whose plane of symmetry is found, such as the whole skull that the mesh is a part of.
+    #[arg(long, value_name = "MESH")]
+    pub(super) of: Option<PathBuf>,
+    /// Mesh file to write (.stl, .ply, .obj, .3mf).
+    #[arg(short, long, value_parser = mesh_file())]
+    pub(super) output: PathBuf,
     /// Worker threads; the result does not depend on it.
     #[arg(long, allow_negative_numbers = true, value_parser = count)]
     pub(super) threads: Option<NonZeroUsize>,
@@ -84,6 +155,10 @@ impl FromStr for Ball {
             )),
         }
     }
+}
+
+fn clearance(text: &str) -> Result<ClearanceMm, String> {
+    ClearanceMm::new(number(text)?).map_err(|e| e.to_string())
 }
 
 fn thickness(text: &str) -> Result<ThicknessMm, String> {

@@ -3,7 +3,9 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use crate::report::{RegionReport, RenderReport, Seconds};
+use crate::mirror::PlaneReport;
+use crate::region_report::{RegionReport, SolidReport};
+use crate::report::{RenderReport, Seconds};
 use crate::source::Contents;
 use crate::{AfterCareReport, PrintCheck};
 
@@ -236,11 +238,16 @@ pub(super) fn threshold(hu: f64, leeway_hu: Option<f64>, reason: Option<&str>) -
 
 /// `roi`.
 pub(super) fn region(report: &RegionReport, file: &Path) -> String {
+    let thesis = report.thesis.iter();
+    let found = thesis.map(|thesis| format!(", {} points behind them", thesis.kept_points));
+    let solid = report.solid.iter();
+    let cut = solid.map(|solid| format!(", {:.1} mm2, cut {}", solid.patch_mm2, solid.direction));
+    let what: String = found.chain(cut).collect();
+    let notes: String = report.solid.iter().map(solid_notes).collect();
     format!(
-        "{}\n  {} selected vertices, {} points behind them, thickness {} mm\n  {} triangles, {} vertices, {}{}\n  {}\n  {:.2} s\n",
+        "{}\n  {} selected vertices{what}, thickness {} mm\n{notes}  {} triangles, {} vertices, {}{}\n  {}\n  {:.2} s\n",
         file.display(),
-        report.selected,
-        report.kept_points,
+        report.selected(),
         report.thickness_mm,
         report.triangles,
         report.vertices,
@@ -249,6 +256,42 @@ pub(super) fn region(report: &RegionReport, file: &Path) -> String {
         verdict(report.watertight, report.manifold),
         report.seconds,
     )
+}
+
+/// What was done to the selection or the mesh before a solid was cut, a line each.
+fn solid_notes(solid: &SolidReport) -> String {
+    let counts = [
+        (
+            solid.dropped_pieces,
+            "pieces of the selection left out: crumbs, or hidden behind others",
+        ),
+        (solid.closed_gaps, "gaps in the selection closed"),
+        (solid.filled_holes, "holes of the mesh filled first"),
+    ];
+    let counts = counts.iter().filter(|(count, _)| *count > 0);
+    let mirror = solid.mirror.iter();
+    let lines: Vec<String> = counts
+        .map(|(count, what)| format!("  {count} {what}\n"))
+        .chain(mirror.map(|m| format!("  taken from the other side of {}\n", plane(m))))
+        .collect();
+    lines.concat()
+}
+
+fn plane(report: &PlaneReport) -> String {
+    let [x, y, z] = report.normal;
+    let found = report.error_mm.zip(report.mean_mm);
+    let found = found.map_or_else(String::new, |(error, mean)| {
+        format!(" (found; the best 70 % of the surface fits within {error:.2} mm rms, all of it within {mean:.2} mm in the mean)")
+    });
+    format!(
+        "the plane {x:.4},{y:.4},{z:.4},{:.2}{found}",
+        report.offset_mm
+    )
+}
+
+/// `mirror`.
+pub(super) fn mirrored(report: &PlaneReport, file: &Path) -> String {
+    format!("{}\n  mirrored in {}\n", file.display(), plane(report))
 }
 
 /// `check`.

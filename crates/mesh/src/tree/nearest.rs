@@ -76,10 +76,16 @@ impl TriangleTree<'_> {
 }
 
 impl TriangleTree<'_> {
-    /// Whether the ray from a place in a direction of length 1 meets any triangle.
-    pub fn is_met(&self, from_mm: [f64; 3], direction: [f64; 3]) -> bool {
+    /// The first triangle that the ray from a place in a direction of length 1 meets before `within_mm`,
+    /// and how far (mm) away.
+    pub fn first_hit(
+        &self,
+        from_mm: [f64; 3],
+        direction: [f64; 3],
+        within_mm: f64,
+    ) -> Option<(f64, u32)> {
         let ray = Ray::new(from_mm, direction, Start::Free);
-        first_hit(self, &ray, f64::INFINITY).is_some()
+        first_hit(self, &ray, within_mm).map(|hit| (hit.distance_mm, hit.triangle))
     }
 }
 

@@ -33,9 +33,11 @@ __all__ = [
     "histogram",
     "keep_islands",
     "label_components",
+    "local_thickness",
     "main",
     "mean_neighbour_distance",
     "methods",
+    "mirror",
     "phantom",
     "point_cloud",
     "read_mesh",
@@ -46,6 +48,7 @@ __all__ = [
     "select_roi",
     "smooth",
     "suggest_thresholds",
+    "symmetry_plane",
     "tetrahedralize",
     "wall_thickness",
     "write_phantom",
@@ -70,6 +73,17 @@ _Threshold: TypeAlias = Literal[
     "thin-bone",
     "teeth",
 ]
+# Which way a solid is cut: three numbers are a direction.
+_Direction: TypeAlias = (
+    Literal["normal", "through", "outward"] | Sequence[float] | npt.NDArray[np.floating]
+)
+# (nx, ny, nz, d) with n . p = d in mm, or three places.
+_Plane: TypeAlias = (
+    Literal["auto", "x", "y", "z"]
+    | Sequence[float]
+    | Sequence[Sequence[float]]
+    | npt.NDArray[np.floating]
+)
 _Orientation: TypeAlias = Literal[
     "axial",
     "reversed",
@@ -415,11 +429,38 @@ def select_roi(
     selected_vertices: npt.ArrayLike,
     *,
     thickness_mm: float,
-    method: Literal["thesis"] = "thesis",
+    method: Literal["solid", "thesis"] = "solid",
+    direction: _Direction | None = None,
+    clearance_mm: float | None = None,
+    hidden: bool = False,
+    mirror: _Plane | None = None,
+    mirror_back: bool = False,
     threads: SupportsIndex | None = None,
     progress: _Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Mesh: ...
+def local_thickness(
+    mesh: Mesh,
+    selected_vertices: npt.ArrayLike,
+    *,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> dict[str, float] | None: ...
+def mirror(
+    mesh: Mesh,
+    plane: _Plane,
+    *,
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Mesh: ...
+def symmetry_plane(
+    mesh: Mesh,
+    *,
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> tuple[float, float, float, float]: ...
 def check(
     mesh: Mesh,
     *,

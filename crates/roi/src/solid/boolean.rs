@@ -3,6 +3,7 @@
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
+use bonemesh_mesh::TriangleMesh;
 use bonemesh_task::{Cancelled, Task};
 use manifold_rust::cancel::CancelToken;
 use manifold_rust::manifold::Manifold;
@@ -20,6 +21,16 @@ const LOOK_EVERY: Duration = Duration::from_millis(20);
 pub(super) struct Body {
     pub(super) vertices_mm: Vec<Vector>,
     pub(super) triangles: Vec<[u32; 3]>,
+}
+
+impl Body {
+    pub(super) fn of(mesh: TriangleMesh) -> Self {
+        let (vertices_mm, triangles) = mesh.into_parts();
+        Self {
+            vertices_mm,
+            triangles,
+        }
+    }
 }
 
 /// Where a triangle of the common part comes from.

@@ -3,7 +3,8 @@
 //! 1. [`Neighbourhood::around`]: the triangles whose boxes touch a box, with their own numbers for vertices;
 //!    open where the box ends.
 //! 2. [`Part::of`]: what lies in a box, cut off at its sides, one after the other (`cut_off`), and closed
-//!    there.
+//!    there. First the two sides along the axis on which the box is the smallest part of the mesh, so
+//!    that little is left for the others.
 //!
 //! The lids are fans over the rims, which may overlap in their plane. That is enough: they lie outside
 //! of all that is cut, and what lies inside of a closed surface depends on its rims alone.
@@ -11,7 +12,7 @@
 use bonemesh_mesh::TriangleMesh;
 use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::vector::{Vector, minus, plus_scaled};
 
@@ -20,14 +21,14 @@ const STRIDE: usize = 1 << 14;
 
 /// A box along the axes (mm).
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Space {
-    pub(super) low: Vector,
-    pub(super) high: Vector,
+pub(crate) struct Space {
+    pub(crate) low: Vector,
+    pub(crate) high: Vector,
 }
 
 impl Space {
     /// The box of some points; `None` without points.
-    pub(super) fn of(points: impl IntoIterator<Item = Vector>) -> Option<Self> {
+    pub(crate) fn of(points: impl IntoIterator<Item = Vector>) -> Option<Self> {
         points.into_iter().fold(None, |space: Option<Self>, point| {
             let space = space.unwrap_or(Self {
                 low: point,
@@ -41,14 +42,36 @@ impl Space {
     }
 
     /// The box with so much more on all sides.
-    pub(super) fn wider(self, by_mm: f64) -> Self {
+    pub(crate) fn wider(self, by_mm: f64) -> Self {
         Self {
             low: self.low.map(|low| low - by_mm),
             high: self.high.map(|high| high + by_mm),
         }
     }
 
-    fn touches(&self, corners: [Vector; 3]) -> bool {
+    /// The axis along which it is the smallest part of a mesh.
+    fn narrowest(&self, mesh: &TriangleMesh) -> usize {
+        let Some([low, high]) = mesh.bounds_mm() else {
+            return 0;
+        };
+        let part = |axis: usize| (self.high[axis] - self.low[axis]) / (high[axis] - low[axis]);
+        (0..3)
+            .min_by(|a, b| part(*a).total_cmp(&part(*b)))
+            .unwrap_or(0)
+    }
+
+    /// The slab of all places that are in it along one axis.
+    fn along(&self, axis: usize) -> Self {
+        let mut slab = Self {
+            low: [f64::NEG_INFINITY; 3],
+            high: [f64::INFINITY; 3],
+        };
+        slab.low[axis] = self.low[axis];
+        slab.high[axis] = self.high[axis];
+        slab
+    }
+
+    pub(super) fn touches(&self, corners: [Vector; 3]) -> bool {
         (0..3).all(|axis| {
             corners.iter().any(|c| c[axis] >= self.low[axis])
                 && corners.iter().any(|c| c[axis] <= self.high[axis])
@@ -57,16 +80,16 @@ impl Space {
 }
 
 /// A part of a mesh.
-pub(super) struct Neighbourhood {
-    pub(super) vertices_mm: Vec<Vector>,
-    pub(super) triangles: Vec<[u32; 3]>,
+pub(crate) struct Neighbourhood {
+    pub(crate) vertices_mm: Vec<Vector>,
+    pub(crate) triangles: Vec<[u32; 3]>,
     /// The number of each vertex in the whole mesh.
-    pub(super) of_mesh: Vec<u32>,
+    pub(crate) of_mesh: Vec<u32>,
 }
 
 impl Neighbourhood {
     /// The triangles of `mesh` whose boxes touch `space`, in their order.
-    pub(super) fn around(
+    pub(crate) fn around(
         mesh: &TriangleMesh,
         space: &Space,
         task: &Task,
@@ -110,10 +133,13 @@ pub(super) struct Part {
 impl Part {
     /// What of the closed `mesh` lies in `space`.
     pub(super) fn of(mesh: &TriangleMesh, space: &Space, task: &Task) -> Result<Self, Cancelled> {
-        let mut vertices_mm = mesh.vertices_mm().to_vec();
-        let whole = vertices_mm.len() as u32;
-        let mut triangles = mesh.triangles().to_vec();
-        for axis in 0..3 {
+        let first = space.narrowest(mesh);
+        let Neighbourhood {
+            mut vertices_mm,
+            mut triangles,
+            of_mesh,
+        } = Neighbourhood::around(mesh, &space.along(first), task)?;
+        for axis in [first, (first + 1) % 3, (first + 2) % 3] {
             for side in [
                 Side::above(axis, space.low[axis]),
                 Side::below(axis, space.high[axis]),
@@ -134,8 +160,24 @@ impl Part {
         Ok(Self {
             triangles,
             vertices_mm: used.iter().map(|v| vertices_mm[*v as usize]).collect(),
-            of_mesh: used.iter().map(|v| (*v < whole).then_some(*v)).collect(),
+            of_mesh: used
+                .iter()
+                .map(|v| of_mesh.get(*v as usize).copied())
+                .collect(),
         })
+    }
+}
+
+impl Part {
+    /// Which of its triangles are these of the whole mesh, uncut.
+    pub(super) fn is_of(&self, triangles: &FxHashSet<[u32; 3]>) -> Vec<bool> {
+        let whole = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| self.of_mesh[v as usize]);
+            Some([a?, b?, c?])
+        };
+        let own = self.triangles.iter().map(whole);
+        own.map(|t| t.is_some_and(|t| triangles.contains(&t)))
+            .collect()
     }
 }
 

@@ -16,14 +16,7 @@ pub(super) enum Finished {
 
 /// Keeps what hangs together with the patch. `is_front`: by the triangles of the bone, which of them are
 /// the patch's.
-///
-/// # Errors
-/// [`RoiError::NothingCut`] where nothing does, or the work was cancelled.
-pub(super) fn finished(
-    (cut, sources): (Body, Vec<Source>),
-    is_front: &[bool],
-    task: &Task,
-) -> Result<Finished, RoiError> {
+pub(super) fn at_patch((cut, sources): (Body, Vec<Source>), is_front: &[bool]) -> Body {
     let mut sets = Sets::new(cut.vertices_mm.len());
     for &[a, b, c] in &cut.triangles {
         sets.join(a, b);
@@ -35,12 +28,26 @@ pub(super) fn finished(
             is_kept[sets.lowest(triangle[0]) as usize] = true;
         }
     }
-    let mut triangles = cut.triangles;
+    let Body {
+        vertices_mm,
+        mut triangles,
+    } = cut;
     triangles.retain(|t| is_kept[sets.lowest(t[0]) as usize]);
-    if triangles.is_empty() {
+    Body {
+        vertices_mm,
+        triangles,
+    }
+}
+
+/// Rounds to what a file holds, and checks that.
+///
+/// # Errors
+/// [`RoiError::NothingCut`] where there is nothing, or the work was cancelled.
+pub(super) fn finished(cut: Body, task: &Task) -> Result<Finished, RoiError> {
+    if cut.triangles.is_empty() {
         return Err(RoiError::NothingCut);
     }
-    let mesh = TriangleMesh::new(cut.vertices_mm, triangles)?.compacted();
+    let mesh = TriangleMesh::new(cut.vertices_mm, cut.triangles)?.compacted();
     let written = mesh.as_written(task)?;
     let topology = check_topology(&written, task)?;
     let is_closed = topology.watertight && topology.manifold && topology.degenerate_triangles == 0;

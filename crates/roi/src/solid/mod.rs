@@ -2,38 +2,70 @@
 //!
 //! 1. [`crop`]: what lies around the selection, so that the work does not depend on the size of the mesh.
 //! 2. [`patch`]: which triangles were meant.
-//! 3. [`outline`]: the patch's outline, smooth, and how far vertices are from it.
-//! 4. [`sheet`], [`cutter`]: the body of all places below the patch down to the thickness.
-//! 5. [`boolean`]: what bone and cutter have in common.
-//! 6. [`finish`]: the part of it at the patch, checked as a file would hold it. Where 32-bit coordinates
+//! 3. [`refine`], [`outline`]: the patch's outline, smooth, and how far vertices are from it.
+//! 4. [`sheet`]: the patch and what is around it, as places are looked up; [`far_side`]: how deep the bone
+//!    below it is.
+//! 5. [`cutter`]: the body of all places that belong to the patch, [`below`] it or [`straight`] behind it, on
+//!    the nodes of a [`lattice`].
+//! 6. [`boolean`]: what bone and cutter have in common.
+//! 7. [`finish`]: the part of it at the patch, checked as a file would hold it. Where 32-bit coordinates
 //!    make triangles meet, the cutter's lattice is shifted a little and all is done again.
 
+mod below;
 mod boolean;
 mod crop;
 mod cutter;
+mod far_side;
 mod finish;
+mod flaps;
+mod lattice;
 mod outline;
 mod patch;
+mod refine;
 mod sheet;
+mod straight;
 
-use bonemesh_mesh::TriangleMesh;
+use bonemesh_mesh::{TriangleMesh, TriangleTree};
 use bonemesh_task::Task;
 use rustc_hash::FxHashSet;
 
+use self::below::Below;
 use self::boolean::{Body, common};
-use self::crop::{Neighbourhood, Part, Space};
-use self::cutter::{Depths, Lattice, cutter, lid_mm, step_mm};
-use self::finish::{Finished, finished};
+pub(crate) use self::crop::{Neighbourhood, Space};
+pub(crate) use self::lattice::Frame;
+pub(crate) use self::straight::covered;
+
+use self::crop::Part;
+use self::cutter::Cutter;
+use self::far_side::end_at_far_side;
+use self::finish::{Finished, at_patch, finished};
+use self::lattice::{Lattice, affordable_mm, step_mm};
 use self::outline::Outline;
 use self::patch::Patch;
+use self::refine::Fine;
 use self::sheet::Sheet;
+use self::straight::Straight;
 use crate::selection::Selection;
-use crate::{RoiError, ThicknessMm};
+use crate::vector::{Vector, plus_scaled};
+use crate::{ClearanceMm, Direction, RoiError, ThicknessMm};
 
 /// Lattices that are tried.
 const TRIES: u32 = 12;
 /// How far (mm) around the selection, and around what is cut, is looked at.
 const BESIDE_MM: f64 = 3.0;
+/// Steps that the lid lies above the patch, so that nothing of it lies in the bone's surface.
+const LID_STEPS: f64 = 2.5;
+/// Longest edges, in steps, of triangles that places are looked up on.
+const EDGE_STEPS: f64 = 3.0;
+/// At least so many of them in the patch's width, and so many beside it.
+const EDGES_IN_WIDTH: f64 = 6.0;
+const EDGES_BESIDE: f64 = 6.0;
+/// Least distance, in steps, from the outline to the middle of a patch.
+const LEAST_WIDTH_STEPS: f64 = 1.5;
+/// How far (mm) the smoothed patch may lie outside of the bone, where a plate keeps its distance.
+const SMOOTHED_MM: f64 = 1.0;
+/// How far what is cut bulges, in parts of the thickness: at a crease, between what lies below its two sides.
+const BULGE: f64 = 0.3;
 /// Parts of a step by which the lattice is shifted from try to try: multiples of these never come back.
 const SHIFTS: [f64; 3] = [
     0.618_033_988_749_895,
@@ -41,25 +73,57 @@ const SHIFTS: [f64; 3] = [
     0.819_172_513_396_164,
 ];
 
-/// The bone under a patch.
+/// What a solid is to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolidRequest {
+    /// How deep it is cut, or how thick a plate is.
+    pub thickness: ThicknessMm,
+    /// Which way.
+    pub direction: Direction,
+    /// The gap between bone and plate; only for [`Direction::Outward`].
+    pub clearance: ClearanceMm,
+    /// Whether selected pieces that are hidden behind others count, too.
+    pub with_hidden: bool,
+}
+
+impl SolidRequest {
+    /// Along the normals, with no hidden pieces.
+    pub fn new(thickness: ThicknessMm) -> Self {
+        Self {
+            thickness,
+            direction: Direction::default(),
+            clearance: ClearanceMm::default(),
+            with_hidden: false,
+        }
+    }
+}
+
+/// The bone under a patch, or the plate on it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solid {
     /// Closed, outward-oriented, in coordinates that a file's 32-bit floats hold.
     pub mesh: TriangleMesh,
+    /// Distinct selected vertices.
+    pub selected: usize,
     /// Area of the selected patch.
     pub patch_mm2: f64,
+    /// Mean direction from the patch into the bone, of length 1.
+    pub inward: [f64; 3],
     /// Pieces of the selection that were left out: crumbs, and those behind the largest.
     pub dropped: usize,
     /// Gaps in the selection that were closed.
     pub closed: usize,
 }
 
-/// The bone of `mesh` under the `selected` vertices, down to `thickness` or to the far side of the bone.
+/// The bone of `mesh` under the `selected` vertices, down to the thickness or to the far side of the bone; or
+/// the plate of that thickness on it.
 ///
 /// The front are the triangles of the mesh, unchanged but along the outline, which runs smoothly between
-/// selected vertices and others; the sides stand upright on the surface; the back is the bone's far side
-/// where that is within reach, else as deep as the thickness below the nearest place of the patch. The
-/// result is the same for any number of threads and any order of the selection.
+/// selected vertices and others; the sides stand upright on the surface, or lie along a straight direction;
+/// the back is the bone's far side where that is within reach, else as deep as the thickness below the
+/// nearest place of the patch, or straight behind it. A plate keeps its clearance from all bone near, and its
+/// outer side follows the patch smoothed. The result is the same for any number of threads and any order of
+/// the selection.
 ///
 /// # Errors
 /// [`RoiError`]: a selection without a triangle or with an index that the mesh does not have, a surface that
@@ -67,73 +131,179 @@ pub struct Solid {
 pub fn select_solid(
     mesh: &TriangleMesh,
     selected: &[u32],
-    thickness: ThicknessMm,
+    request: &SolidRequest,
     task: &Task,
 ) -> Result<Solid, RoiError> {
     let selection = &Selection::new(selected, mesh.vertices_mm().len())?;
     let place = |vertex: &u32| mesh.vertices_mm()[*vertex as usize];
     let space = Space::of(selection.indices().iter().map(place)).ok_or(RoiError::NoSelection)?;
     let near = Neighbourhood::around(mesh, &space.wider(2.0 * BESIDE_MM), task)?;
-    let is_selected: Vec<bool> = near
-        .of_mesh
-        .iter()
-        .map(|v| selection.contains(*v))
-        .collect();
-    let patch = Patch::of(&near, &is_selected, task)?;
-    let outline = Outline::of(&near, &patch, &is_selected, BESIDE_MM, task)?;
-    let sheet = Sheet::of(&near, &outline)?;
-    let step_mm = step_mm(patch.area_mm2, thickness.mm());
-    let depths = Depths {
-        top_mm: -lid_mm(step_mm),
-        bottom_mm: thickness.mm(),
+    let of_mesh = near.of_mesh.iter();
+    let is_selected: Vec<bool> = of_mesh.map(|v| selection.contains(*v)).collect();
+    let view = request.direction.given();
+    let patch = Patch::of(&near, &is_selected, view, request.with_hidden, task)?;
+    let inward = patch.inward(&near);
+    let step_mm = step_mm(patch.area_mm2, request.thickness.mm());
+    let is_patch = whole_triangles(&near, &patch);
+    let mut fine = Fine {
+        near,
+        has_triangle: patch.has_triangle,
+        is_selected,
     };
-    let space = Space::of(sheet.around_patch()).ok_or(RoiError::NothingCut)?;
-    let space = space.wider(thickness.mm().max(lid_mm(step_mm)) + step_mm);
-    let lookup = sheet.lookup(task)?;
-    let around = space.wider(BESIDE_MM);
-    let part = Part::of(mesh, &around, task)?;
-    let is_front = front(&near, &patch, &part);
-    let body = Body {
-        vertices_mm: part.vertices_mm,
-        triangles: part.triangles,
+    let longest_mm = (EDGE_STEPS * step_mm).min(patch.area_mm2.sqrt() / EDGES_IN_WIDTH);
+    fine.refine(&space.wider(EDGES_BESIDE * longest_mm), longest_mm);
+    let outline = Outline::of(&fine, BESIDE_MM, task)?;
+    let sheet = Sheet::of(&fine.near, &outline, request.thickness.mm())?;
+    let width_mm = sheet.inside_mm.iter().copied().fold(0.0, f64::max);
+    if width_mm < LEAST_WIDTH_STEPS * step_mm {
+        return Err(RoiError::TooSmall {
+            area_mm2: patch.area_mm2,
+        });
+    }
+    let cut = Cut {
+        request,
+        step_mm,
+        inward,
+        sheet,
     };
-    for attempt in 0..TRIES {
-        let lattice = Lattice::around(space, step_mm, shift(attempt));
-        let cutter = cutter(&lookup, &lattice, depths, task)?;
-        let (vertices_mm, triangles) = cutter.into_parts();
-        let cutter = Body {
-            vertices_mm,
-            triangles,
-        };
-        let cut = common(&body, &cutter, task)?;
-        match finished(cut, &is_front, task)? {
-            Finished::Sound(mesh) => {
-                return Ok(Solid {
-                    mesh,
-                    patch_mm2: patch.area_mm2,
-                    dropped: patch.dropped,
-                    closed: patch.closed,
-                });
+    Ok(Solid {
+        mesh: cut.sound(mesh, &is_patch, task)?,
+        selected: selection.indices().len(),
+        patch_mm2: patch.area_mm2,
+        inward,
+        dropped: patch.dropped,
+        closed: patch.closed,
+    })
+}
+
+/// The patch's triangles as the whole mesh numbers them.
+fn whole_triangles(near: &Neighbourhood, patch: &Patch) -> FxHashSet<[u32; 3]> {
+    let triangles = near.triangles.iter().zip(&patch.has_triangle);
+    let own = triangles.filter(|(_, has)| **has);
+    own.map(|(t, _)| t.map(|v| near.of_mesh[v as usize]))
+        .collect()
+}
+
+/// What is known before the bone is looked at.
+struct Cut<'a> {
+    request: &'a SolidRequest,
+    step_mm: f64,
+    /// The patch's mean direction into the bone.
+    inward: Vector,
+    sheet: Sheet,
+}
+
+impl Cut<'_> {
+    /// The first sound solid of several lattices.
+    fn sound(
+        mut self,
+        mesh: &TriangleMesh,
+        is_patch: &FxHashSet<[u32; 3]>,
+        task: &Task,
+    ) -> Result<TriangleMesh, RoiError> {
+        let straight = self.straight();
+        let frame = straight.map_or(Frame::PATIENT, Frame::along);
+        let space = self.space(frame).ok_or(RoiError::NothingCut)?;
+        self.step_mm = affordable_mm(&space, self.step_mm);
+        let around = self.space(Frame::PATIENT).ok_or(RoiError::NothingCut)?;
+        let part = Part::of(mesh, &around.wider(BESIDE_MM), task)?;
+        let is_front = part.is_of(is_patch);
+        let bone = TriangleMesh::new(part.vertices_mm, part.triangles)?;
+        if matches!(
+            self.request.direction,
+            Direction::Normal | Direction::Along(_)
+        ) {
+            let tree = TriangleTree::new(&bone, task)?;
+            let thickness_mm = self.request.thickness.mm();
+            end_at_far_side(&mut self.sheet, &tree, straight, thickness_mm, task)?;
+        }
+        let is_plate = self.request.direction == Direction::Outward;
+        let whole = is_plate.then(|| Sheet::whole(bone.clone()));
+        let cutter = self.cutter(whole.as_ref(), task)?;
+        let bone = Body::of(bone);
+        for attempt in 0..TRIES {
+            let lattice = Lattice::around(frame, space, self.step_mm, shift(attempt));
+            let cutter = Body::of(cutter.surface(&lattice, task)?);
+            let cut = if is_plate {
+                cutter
+            } else {
+                let cut = common(&bone, &cutter, task)?;
+                match self.request.direction {
+                    // Behind hollows it does not hang together with the patch.
+                    Direction::Through => cut.0,
+                    _ => at_patch(cut, &is_front),
+                }
+            };
+            if let Finished::Sound(mesh) = finished(cut, task)? {
+                return Ok(mesh);
             }
-            Finished::Meets => {}
+        }
+        Err(RoiError::NoSound { tries: TRIES })
+    }
+
+    /// The one direction of a straight cut.
+    fn straight(&self) -> Option<Vector> {
+        match self.request.direction {
+            Direction::Through => Some(self.inward),
+            Direction::Along(direction) => Some(direction),
+            Direction::Normal | Direction::Outward => None,
         }
     }
-    Err(RoiError::NoSound { tries: TRIES })
+
+    fn lid_mm(&self) -> f64 {
+        LID_STEPS * self.step_mm
+    }
+
+    /// The box, in a frame, that all that is cut lies in.
+    fn space(&self, frame: Frame) -> Option<Space> {
+        let thickness_mm = self.request.thickness.mm();
+        let [top_mm, bottom_mm] = match self.request.direction {
+            Direction::Outward => [thickness_mm + self.request.clearance.mm(), 0.0],
+            _ => [self.lid_mm(), thickness_mm],
+        };
+        let straight = self.straight();
+        // Along normals it bulges beyond what lies below the vertices.
+        let bulge_mm = if straight.is_some() {
+            0.0
+        } else {
+            BULGE * thickness_mm
+        };
+        let ends = self.sheet.around_patch().flat_map(|(place, normal)| {
+            let outward = straight.map_or(normal, |direction| direction.map(|v| -v));
+            [top_mm, -bottom_mm].map(|mm| frame.of(plus_scaled(place, mm, outward)))
+        });
+        Some(Space::of(ends)?.wider(bulge_mm + 2.0 * self.step_mm))
+    }
+
+    /// `whole`: all of the bone near, for a plate that keeps off it.
+    fn cutter<'s>(&'s self, whole: Option<&'s Sheet>, task: &Task) -> Result<Cutter<'s>, RoiError> {
+        let thickness_mm = self.request.thickness.mm();
+        if self.straight().is_some() {
+            return Ok(Cutter::Straight(Straight {
+                sheet: &self.sheet,
+                top_mm: -self.lid_mm(),
+            }));
+        }
+        let sheet = self.sheet.lookup(task)?;
+        let Some(whole) = whole else {
+            return Ok(Cutter::Below(Below {
+                sheet,
+                top_mm: -self.lid_mm(),
+                bottom_mm: thickness_mm,
+                kept_off: None,
+            }));
+        };
+        let clearance_mm = self.request.clearance.mm();
+        Ok(Cutter::Below(Below {
+            sheet,
+            top_mm: -(clearance_mm + thickness_mm),
+            bottom_mm: SMOOTHED_MM,
+            kept_off: Some((whole.lookup(task)?, clearance_mm)),
+        }))
+    }
 }
 
 /// Where the lattice of a try begins, in parts of a step.
 fn shift(attempt: u32) -> [f64; 3] {
     SHIFTS.map(|part| (f64::from(attempt + 1) * part).fract())
-}
-
-/// Which triangles of a part of the mesh are the patch's.
-fn front(near: &Neighbourhood, patch: &Patch, part: &Part) -> Vec<bool> {
-    let triangles = near.triangles.iter().zip(&patch.has_triangle);
-    let patch: FxHashSet<[Option<u32>; 3]> = triangles
-        .filter(|(_, has)| **has)
-        .map(|(t, _)| t.map(|v| Some(near.of_mesh[v as usize])))
-        .collect();
-    let triangles = part.triangles.iter();
-    let whole = triangles.map(|t| t.map(|v| part.of_mesh[v as usize]));
-    whole.map(|t| patch.contains(&t)).collect()
 }

@@ -1,10 +1,13 @@
 //! The patch's outline, smooth, and how far vertices are from it along the surface.
 //!
-//! 1. `share`: how much of the patch there is at each vertex, 1 inside and 0 outside, blurred over a few
+//! 1. `normals`: which way the surface faces, on the patch as the patch alone says, so that a patch that ends
+//!    at a rim does not bend round it. Neighbours that face apart are not of one side, and no mean goes
+//!    from one to the other.
+//! 2. `share`: how much of the patch there is at each vertex, 1 inside and 0 outside, blurred over a few
 //!    edges (`blurred`). Where it is a half is the outline: so it runs between selected and other
 //!    vertices, not along the teeth of the triangles.
-//! 2. `segments`: the outline's pieces across triangles.
-//! 3. `spread`: from there to all other vertices within reach, from neighbour to neighbour. Outside it goes
+//! 3. `segments`: the outline's pieces across triangles.
+//! 4. `spread`: from there to all other vertices within reach, from neighbour to neighbour. Outside it goes
 //!    on only where the surface still faces about as it does at the outline: around a rim begins another
 //!    side.
 
@@ -14,7 +17,7 @@ use std::collections::BinaryHeap;
 use bonemesh_task::{Cancelled, Task};
 
 use super::crop::Neighbourhood;
-use super::patch::Patch;
+use super::refine::Fine;
 use crate::vector::{Vector, dot, length, minus, plus_scaled, unit};
 
 /// Means over neighbours that blur the shares.
@@ -26,8 +29,8 @@ const STEPS: [f64; 2] = [0.5, -0.53];
 const ROUNDS: usize = 12;
 /// A half of the patch.
 const HALF: f64 = 0.5;
-/// Cosine of the most that the surface turns from the outline outward.
-const SAME_SIDE: f64 = 0.3;
+/// Cosine of the most that the surface turns from the outline outward, and from neighbour to neighbour.
+const SAME_SIDE: f64 = 0.5;
 /// Where a whole body is selected there is no outline, and all is far inside of it.
 const FAR_INSIDE_MM: f64 = 1e3;
 /// Vertices done between two looks at the cancel switch.
@@ -47,17 +50,13 @@ pub(super) struct Outline {
 
 impl Outline {
     /// Reaches so far outside of the outline.
-    pub(super) fn of(
-        near: &Neighbourhood,
-        patch: &Patch,
-        is_selected: &[bool],
-        reach_mm: f64,
-        task: &Task,
-    ) -> Result<Self, Cancelled> {
+    pub(super) fn of(fine: &Fine, reach_mm: f64, task: &Task) -> Result<Self, Cancelled> {
+        let near = &fine.near;
         let neighbours = Neighbours::of(near);
-        let normals = normals(near, &neighbours);
+        let normals = normals(fine, &neighbours);
+        let neighbours = neighbours.kept(|a, b| dot(normals[a], normals[b]) > SAME_SIDE);
         task.check()?;
-        let sharp = sharp(near, patch, is_selected);
+        let sharp = sharp(fine, &neighbours);
         let share = {
             let mut share = sharp.clone();
             for _ in 0..BLURS {
@@ -86,28 +85,33 @@ impl Outline {
     }
 }
 
-/// 1 at the corners of the patch's triangles and at selected vertices beside them, which are the tips of
-/// its teeth, else 0.
-fn sharp(near: &Neighbourhood, patch: &Patch, is_selected: &[bool]) -> Vec<f64> {
+/// 1 at the corners of the patch's triangles and at selected vertices of the same side beside them, which are
+/// the tips of its teeth, else 0.
+fn sharp(fine: &Fine, neighbours: &Neighbours) -> Vec<f64> {
+    let Fine {
+        near,
+        has_triangle,
+        is_selected,
+    } = fine;
     let mut share = vec![0.0; near.vertices_mm.len()];
-    let triangles = near.triangles.iter().zip(&patch.has_triangle);
+    let triangles = near.triangles.iter().zip(has_triangle);
     for (triangle, _) in triangles.filter(|(_, has)| **has) {
         for vertex in triangle {
             share[*vertex as usize] = 1.0;
         }
     }
-    let of_patch = share.clone();
-    for triangle in &near.triangles {
-        if triangle.iter().any(|v| of_patch[*v as usize] > 0.0) {
-            for vertex in triangle.iter().filter(|v| is_selected[**v as usize]) {
-                share[*vertex as usize] = 1.0;
-            }
-        }
+    let is_tip = |v: usize| {
+        let beside = || neighbours.at(v).iter().any(|n| share[*n as usize] > 0.0);
+        is_selected[v] && share[v] == 0.0 && beside()
+    };
+    let tips: Vec<usize> = (0..share.len()).filter(|v| is_tip(*v)).collect();
+    for tip in tips {
+        share[tip] = 1.0;
     }
     share
 }
 
-/// Who is joined to whom by an edge, some twice.
+/// Who is joined to whom by an edge of one side, most twice.
 struct Neighbours {
     starts: Vec<u32>,
     of: Vec<u32>,
@@ -132,6 +136,19 @@ impl Neighbours {
                 *end += 2;
             }
         }
+        Self { starts, of }
+    }
+
+    /// Without those of which each is not kept for the other.
+    fn kept(&self, is_kept: impl Fn(usize, usize) -> bool) -> Self {
+        let mut of = Vec::with_capacity(self.of.len());
+        let mut starts = Vec::with_capacity(self.starts.len());
+        for vertex in 0..self.starts.len() - 1 {
+            starts.push(of.len() as u32);
+            let around = self.at(vertex).iter();
+            of.extend(around.filter(|other| is_kept(vertex, **other as usize)));
+        }
+        starts.push(of.len() as u32);
         Self { starts, of }
     }
 
@@ -170,19 +187,30 @@ fn smoothed(near: &Neighbourhood, neighbours: &Neighbours) -> Vec<Vector> {
     places
 }
 
-/// Outward directions, weighted with areas and smoothed.
-fn normals(near: &Neighbourhood, neighbours: &Neighbours) -> Vec<Vector> {
+/// Outward directions, weighted with areas and smoothed, on the patch and beside it on their own.
+fn normals(fine: &Fine, neighbours: &Neighbours) -> Vec<Vector> {
+    let near = &fine.near;
     let mut normals = vec![[0.0; 3]; near.vertices_mm.len()];
-    for triangle in &near.triangles {
-        let facing = near.facing(*triangle);
-        for vertex in triangle {
-            let normal = &mut normals[*vertex as usize];
-            *normal = plus_scaled(*normal, 1.0, facing);
+    let mut is_of_patch = vec![false; normals.len()];
+    let mut add = |is_patch: bool| {
+        let triangles = near.triangles.iter().zip(&fine.has_triangle);
+        for (triangle, _) in triangles.filter(|(_, has)| **has == is_patch) {
+            let facing = near.facing(*triangle);
+            for &vertex in triangle {
+                let vertex = vertex as usize;
+                is_of_patch[vertex] |= is_patch;
+                if is_of_patch[vertex] == is_patch {
+                    normals[vertex] = plus_scaled(normals[vertex], 1.0, facing);
+                }
+            }
         }
-    }
+    };
+    add(true);
+    add(false);
+    let within = neighbours.kept(|a, b| is_of_patch[a] == is_of_patch[b]);
     for _ in 0..SMOOTHINGS {
         let part = |sum: Vector, n: f64| sum.map(|component| component / n);
-        normals = neighbours.means(&normals, |a, b| plus_scaled(a, 1.0, b), part);
+        normals = within.means(&normals, |a, b| plus_scaled(a, 1.0, b), part);
     }
     normals.into_iter().map(unit).collect()
 }
@@ -225,10 +253,11 @@ fn segments(near: &Neighbourhood, share: &[f64], normals: &[Vector]) -> Vec<([u3
             })
             .collect();
         if let [from, to] = crossings[..] {
-            let normal = triangle.map(|v| normals[v as usize]);
-            let sum = normal
-                .into_iter()
-                .fold([0.0; 3], |sum, n| plus_scaled(sum, 1.0, n));
+            // As the inside says: the outside may be around a rim.
+            let inner = triangle.iter().zip(is_inside).filter(|(_, inside)| *inside);
+            let sum = inner.fold([0.0; 3], |sum, (v, _)| {
+                plus_scaled(sum, 1.0, normals[*v as usize])
+            });
             let normal = unit(sum);
             segments.push((*triangle, Segment { from, to, normal }));
         }
@@ -253,7 +282,11 @@ fn spread(
     // Lengths from 0 up are in the order of their bits.
     let mut offers: BinaryHeap<Reverse<(u64, u32, u32)>> = BinaryHeap::new();
     for (number, (triangle, segment)) in (0..).zip(&segments) {
-        for &vertex in triangle {
+        // Around a rim begins another side.
+        let is_beyond = |v: u32| {
+            share[v as usize] <= HALF && dot(normals[v as usize], segment.normal) <= SAME_SIDE
+        };
+        for vertex in triangle.iter().copied().filter(|v| !is_beyond(*v)) {
             let away = segment.away_mm(near.vertices_mm[vertex as usize]);
             offers.push(Reverse((away.to_bits(), vertex, number)));
         }

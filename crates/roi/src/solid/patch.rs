@@ -1,14 +1,18 @@
 //! Which part of the surface was meant.
 //!
-//! 1. [`Pieces`]: triangles with three selected corners, in pieces that share vertices.
+//! 1. [`Pieces`]: triangles with three selected corners, in pieces that share vertices. Where a direction is
+//!    given, only those that face it.
 //! 2. `without_crumbs`: pieces that a rough lasso leaves beside the large ones are dropped, and so are those
-//!    behind the largest, which a lasso that sees through the bone picks up.
-//! 3. `close_gaps`: small holes in what is left are closed.
+//!    behind others, which a lasso that sees through the bone picks up, unless they are asked for. Without a
+//!    direction the eye is before the largest piece that nothing lies before.
+//! 3. [`drop_flaps`]: what the selection takes of the surface around a rim is left out.
+//! 4. `close_gaps`: small holes in what is left are closed.
 
 use bonemesh_mesh::{Sets, TriangleMesh, TriangleTree};
 use bonemesh_task::Task;
 
 use super::crop::Neighbourhood;
+use super::flaps::drop_flaps;
 use crate::RoiError;
 use crate::vector::{Vector, cross, dot, length, minus, plus_scaled, unit};
 
@@ -19,6 +23,8 @@ const GAP: f64 = 0.02;
 const GAP_MM2: f64 = 2.0;
 /// Triangles of a piece that are looked at to tell whether it lies behind.
 const SAMPLES: usize = 32;
+/// How far (mm) before a triangle a look towards the eye begins, so that it does not see the triangle itself.
+const BEFORE_MM: f64 = 1e-3;
 
 /// The selected part of a neighbourhood's surface.
 pub(super) struct Patch {
@@ -32,17 +38,24 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// `is_selected`: by the neighbourhood's vertices.
+    /// `is_selected`: by the neighbourhood's vertices. `view`: where the selection was looked at along.
     ///
     /// # Errors
-    /// [`RoiError::NoFace`] where no triangle is selected.
+    /// [`RoiError::NoFace`] where no triangle is selected, or none that can be seen.
     pub(super) fn of(
         near: &Neighbourhood,
         is_selected: &[bool],
+        view: Option<Vector>,
+        with_hidden: bool,
         task: &Task,
     ) -> Result<Self, RoiError> {
         let areas_mm2: Vec<f64> = near.triangles.iter().map(|t| near.area_mm2(*t)).collect();
-        let is_chosen = |t: usize| near.triangles[t].iter().all(|v| is_selected[*v as usize]);
+        let view = view.filter(|_| !with_hidden);
+        let is_chosen = |t: usize| {
+            let triangle = near.triangles[t];
+            triangle.iter().all(|v| is_selected[*v as usize])
+                && view.is_none_or(|view| dot(near.facing(triangle), view) < 0.0)
+        };
         let pieces = Pieces::of(near, &areas_mm2, is_chosen);
         if pieces.areas_mm2.is_empty() {
             return Err(RoiError::NoFace {
@@ -50,9 +63,14 @@ impl Patch {
             });
         }
         task.check()?;
-        let is_kept = pieces.without_crumbs(near, task)?;
+        let is_kept = if with_hidden {
+            vec![true; pieces.areas_mm2.len()]
+        } else {
+            pieces.without_crumbs(near, view, task)?
+        };
         let is_of = |piece: &Option<u32>| piece.is_some_and(|piece| is_kept[piece as usize]);
         let mut has_triangle: Vec<bool> = pieces.of_triangles.iter().map(is_of).collect();
+        drop_flaps(near, &mut has_triangle);
         let closed = close_gaps(near, &areas_mm2, &mut has_triangle);
         Ok(Self {
             area_mm2: area_mm2(&areas_mm2, &has_triangle),
@@ -60,6 +78,15 @@ impl Patch {
             dropped: is_kept.iter().filter(|kept| !**kept).count(),
             closed,
         })
+    }
+}
+
+impl Patch {
+    /// The mean of the directions into the body, of length 1.
+    pub(super) fn inward(&self, near: &Neighbourhood) -> Vector {
+        let triangles = near.triangles.iter().zip(&self.has_triangle);
+        let own = triangles.filter(|(_, has)| **has).map(|(t, _)| *t);
+        unit(own.fold([0.0; 3], |sum, t| plus_scaled(sum, -1.0, near.facing(t))))
     }
 }
 
@@ -96,7 +123,7 @@ fn close_gaps(near: &Neighbourhood, areas_mm2: &[f64], has_triangle: &mut [bool]
 
 impl Neighbourhood {
     /// Twice the area of a triangle in the direction that it faces.
-    pub(super) fn facing(&self, triangle: [u32; 3]) -> Vector {
+    pub(crate) fn facing(&self, triangle: [u32; 3]) -> Vector {
         let [a, b, c] = triangle.map(|v| self.vertices_mm[v as usize]);
         cross(minus(b, a), minus(c, a))
     }
@@ -140,49 +167,87 @@ impl Pieces {
         }
     }
 
-    /// Which pieces are large and not behind the largest.
-    fn without_crumbs(&self, near: &Neighbourhood, task: &Task) -> Result<Vec<bool>, RoiError> {
-        let areas = self.areas_mm2.iter();
-        let largest_mm2 = areas.copied().fold(0.0, f64::max);
-        let largest = self.areas_mm2.iter().position(|a| *a >= largest_mm2);
+    /// Which pieces are large and not behind others. `view`: where the selection was looked at along.
+    fn without_crumbs(
+        &self,
+        near: &Neighbourhood,
+        view: Option<Vector>,
+        task: &Task,
+    ) -> Result<Vec<bool>, RoiError> {
+        let largest_mm2 = self.areas_mm2.iter().copied().fold(0.0, f64::max);
         let is_large = |area: &f64| *area >= CRUMB * largest_mm2;
         let mut is_kept: Vec<bool> = self.areas_mm2.iter().map(is_large).collect();
-        if is_kept.iter().filter(|kept| **kept).count() < 2 {
+        let large: Vec<u32> = (0..)
+            .zip(&is_kept)
+            .filter(|(_, kept)| **kept)
+            .map(|(piece, _)| piece)
+            .collect();
+        if large.len() < 2 {
             return Ok(is_kept);
         }
-        let largest = largest.map(|piece| piece as u32);
         let triangles = near.triangles.iter().zip(&self.of_triangles);
-        let of_largest = triangles.filter(|(_, piece)| **piece == largest);
-        let of_largest: Vec<[u32; 3]> = of_largest.map(|(t, _)| *t).collect();
-        let outward = of_largest.iter().map(|t| near.facing(*t));
-        let outward = unit(outward.fold([0.0; 3], |sum, n| plus_scaled(sum, 1.0, n)));
-        let mesh = TriangleMesh::new(near.vertices_mm.clone(), of_largest)?;
+        let own = triangles.filter(|(_, piece)| piece.is_some_and(|p| is_kept[p as usize]));
+        let own = own.map(|(t, _)| *t).collect();
+        let mesh = TriangleMesh::new(near.vertices_mm.clone(), own)?;
         let tree = TriangleTree::new(&mesh, task)?;
-        for (piece, kept) in (0..).zip(&mut is_kept) {
-            if *kept && Some(piece) != largest {
-                *kept = !self.is_behind(piece, near, &tree, outward);
-            }
+        let towards_eye = match view {
+            Some(view) => view.map(|v| -v),
+            None => self.front(&large, near, &tree),
+        };
+        for piece in large {
+            is_kept[piece as usize] = !self.is_hidden(piece, near, &tree, towards_eye);
+        }
+        // Whatever the eye, something was meant.
+        if !is_kept.contains(&true) {
+            is_kept = self.areas_mm2.iter().map(is_large).collect();
         }
         Ok(is_kept)
     }
 
-    /// Whether most of a piece lies behind a surface that faces `outward`, or faces the other way.
-    fn is_behind(
+    /// Which way the largest piece faces that nothing lies before.
+    fn front(&self, large: &[u32], near: &Neighbourhood, tree: &TriangleTree<'_>) -> Vector {
+        let rank = |piece: &&u32| {
+            let is_free = !self.is_hidden(**piece, near, tree, self.outward(**piece, near));
+            (is_free, self.areas_mm2[**piece as usize])
+        };
+        let order = |a: &(bool, f64), b: &(bool, f64)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1));
+        // The first of equal ones.
+        let first = large.iter().rev().max_by(|a, b| order(&rank(a), &rank(b)));
+        first.map_or([0.0; 3], |piece| self.outward(*piece, near))
+    }
+
+    fn of_piece<'a>(&'a self, piece: u32, near: &'a Neighbourhood) -> Vec<[u32; 3]> {
+        let triangles = near.triangles.iter().zip(&self.of_triangles);
+        let own = triangles.filter(|(_, of)| **of == Some(piece));
+        own.map(|(t, _)| *t).collect()
+    }
+
+    fn outward(&self, piece: u32, near: &Neighbourhood) -> Vector {
+        let facing = |t: &[u32; 3]| near.facing(*t);
+        let own = self.of_piece(piece, near);
+        let sum = own
+            .iter()
+            .map(facing)
+            .fold([0.0; 3], |sum, n| plus_scaled(sum, 1.0, n));
+        unit(sum)
+    }
+
+    /// Whether most of a piece lies behind another, or faces away.
+    fn is_hidden(
         &self,
         piece: u32,
         near: &Neighbourhood,
         tree: &TriangleTree<'_>,
-        outward: Vector,
+        towards_eye: Vector,
     ) -> bool {
-        let triangles = near.triangles.iter().zip(&self.of_triangles);
-        let own = triangles.filter(|(_, of)| **of == Some(piece));
-        let own: Vec<[u32; 3]> = own.map(|(t, _)| *t).collect();
-        let stride = own.len().div_ceil(SAMPLES);
-        let samples = own.iter().step_by(stride);
+        let own = self.of_piece(piece, near);
+        let samples = own.iter().step_by(own.len().div_ceil(SAMPLES));
         let is_hidden = |triangle: &&[u32; 3]| {
             let [a, b, c] = triangle.map(|v| near.vertices_mm[v as usize]);
             let middle = [0, 1, 2].map(|axis| (a[axis] + b[axis] + c[axis]) / 3.0);
-            dot(near.facing(**triangle), outward) < 0.0 || tree.is_met(middle, outward)
+            let before = plus_scaled(middle, BEFORE_MM, towards_eye);
+            dot(near.facing(**triangle), towards_eye) < 0.0
+                || tree.first_hit(before, towards_eye, f64::INFINITY).is_some()
         };
         let hidden = samples.clone().filter(is_hidden).count();
         2 * hidden > samples.count()

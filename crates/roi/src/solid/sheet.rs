@@ -1,7 +1,8 @@
 //! The patch and what is around it as a surface that places are looked up on.
 //!
 //! A place in the bone belongs to the nearest place of the sheet: the distance is its depth, and the
-//! sides of the cut stand upright on the surface wherever that curls.
+//! sides of the cut stand upright on the surface wherever that curls. Cuts straight along one direction
+//! take the sheet as a relief instead ([`super::straight`]).
 
 use bonemesh_mesh::{TriangleMesh, TriangleTree};
 use bonemesh_task::Task;
@@ -9,15 +10,17 @@ use bonemesh_task::Task;
 use super::crop::Neighbourhood;
 use super::outline::Outline;
 use crate::RoiError;
-use crate::vector::{Vector, dot, length, minus, plus_scaled, unit};
+use crate::vector::{Vector, cross, dot, length, minus, plus_scaled, unit};
 
 /// A part of a neighbourhood's surface.
 pub(super) struct Sheet {
     pub(super) mesh: TriangleMesh,
     /// By vertex: how far (mm) inside of the outline, below 0 outside.
-    inside_mm: Vec<f64>,
+    pub(super) inside_mm: Vec<f64>,
     /// By vertex: which way is out.
-    normals: Vec<Vector>,
+    pub(super) normals: Vec<Vector>,
+    /// By vertex: how deep (mm) is cut.
+    pub(super) bottom_mm: Vec<f64>,
     /// By vertex: whether the sheet ends there.
     is_rim: Vec<bool>,
 }
@@ -30,13 +33,19 @@ pub(super) struct Seen {
     pub(super) depth_mm: f64,
     /// How far (mm) inside of the outline, below 0 outside.
     pub(super) inside_mm: f64,
+    /// How deep (mm) is cut there.
+    pub(super) bottom_mm: f64,
     /// How far (mm) from the sheet.
     pub(super) away_mm: f64,
 }
 
 impl Sheet {
-    /// The triangles of which all corners are within the outline's reach.
-    pub(super) fn of(near: &Neighbourhood, outline: &Outline) -> Result<Self, RoiError> {
+    /// The triangles of which all corners are within the outline's reach, all to be cut as deep.
+    pub(super) fn of(
+        near: &Neighbourhood,
+        outline: &Outline,
+        bottom_mm: f64,
+    ) -> Result<Self, RoiError> {
         let is_reached = |v: &u32| !outline.inside_mm[*v as usize].is_nan();
         let mut numbers = vec![u32::MAX; near.vertices_mm.len()];
         let mut members = Vec::new();
@@ -56,16 +65,44 @@ impl Sheet {
             mesh: TriangleMesh::new(vertices, triangles)?,
             inside_mm: members.iter().map(|v| outline.inside_mm[*v]).collect(),
             normals: members.iter().map(|v| outline.normals[*v]).collect(),
+            bottom_mm: vec![bottom_mm; members.len()],
             is_rim,
         })
     }
 
-    /// The corners of all triangles that are inside of the outline or crossed by it.
-    pub(super) fn around_patch(&self) -> impl Iterator<Item = Vector> + '_ {
+    /// A whole closed surface as it is.
+    pub(super) fn whole(mesh: TriangleMesh) -> Self {
+        let mut normals = vec![[0.0; 3]; mesh.vertices_mm().len()];
+        for triangle in mesh.triangles() {
+            let [a, b, c] = mesh.corners_mm(*triangle);
+            let facing = unit(cross(minus(b, a), minus(c, a)));
+            // Weights by angle: the sum tells inside from outside whatever the triangles' shapes.
+            for (vertex, [here, next, last]) in
+                triangle.iter().zip([[a, b, c], [b, c, a], [c, a, b]])
+            {
+                let [next, last] = [next, last].map(|end| unit(minus(end, here)));
+                let angle = dot(next, last).clamp(-1.0, 1.0).acos();
+                let normal = &mut normals[*vertex as usize];
+                *normal = plus_scaled(*normal, angle, facing);
+            }
+        }
+        let vertices = normals.len();
+        Self {
+            mesh,
+            inside_mm: vec![0.0; vertices],
+            normals,
+            bottom_mm: vec![0.0; vertices],
+            is_rim: vec![false; vertices],
+        }
+    }
+
+    /// The corners of all triangles that are inside of the outline or crossed by it, each with the way out.
+    pub(super) fn around_patch(&self) -> impl Iterator<Item = (Vector, Vector)> + '_ {
         let is_inside = |v: &u32| self.inside_mm[*v as usize] > 0.0;
         let triangles = self.mesh.triangles().iter();
         let crossed = triangles.filter(move |t| t.iter().any(is_inside));
-        crossed.flat_map(|t| self.mesh.corners_mm(*t))
+        let corners = crossed.flat_map(|t| t.map(|v| v as usize));
+        corners.map(|v| (self.mesh.vertices_mm()[v], self.normals[v]))
     }
 
     /// The same sheet with its triangles by place.
@@ -92,9 +129,11 @@ impl Lookup<'_> {
         let upward = parts().fold([0.0; 3], |sum, (vertex, weight)| {
             plus_scaled(sum, weight, self.sheet.normals[vertex as usize])
         });
-        let inside_mm: f64 = parts()
-            .map(|(vertex, weight)| weight * self.sheet.inside_mm[vertex as usize])
-            .sum();
+        let mean = |values: &[f64]| -> f64 {
+            parts()
+                .map(|(vertex, weight)| weight * values[vertex as usize])
+                .sum()
+        };
         let away = minus(place_mm, nearest.place_mm);
         let away_mm = length(away);
         let upward = unit(upward);
@@ -108,7 +147,8 @@ impl Lookup<'_> {
         };
         Some(Seen {
             depth_mm: if above > 0.0 { -away_mm } else { away_mm },
-            inside_mm: inside_mm - beside_mm,
+            inside_mm: mean(&self.sheet.inside_mm) - beside_mm,
+            bottom_mm: mean(&self.sheet.bottom_mm),
             away_mm,
         })
     }

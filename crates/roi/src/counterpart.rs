@@ -1,0 +1,187 @@
+//! What of a mirrored body's other side lies where the selection is seen in the mirror.
+//!
+//! The selection may go around a defect, where nothing can be selected. So it is looked at as an area, seen
+//! along its own mean direction: its triangles as a relief, gaps and holes in it closed. On the other side
+//! those vertices count whose mirror images lie in that area, about as deep, and face the same way.
+
+use bonemesh_mesh::{Plane, TriangleMesh};
+use bonemesh_task::Task;
+
+use crate::RoiError;
+use crate::selection::Selection;
+use crate::solid::{Frame, Neighbourhood, Space, covered};
+use crate::vector::{Vector, cross, dot, minus, plus_scaled};
+
+/// Side of a cell of the area (mm); larger where the area is.
+const CELL_MM: f64 = 0.5;
+const MOST_CELLS: f64 = 4e6;
+/// Gaps in the area up to twice as wide (mm) are closed.
+const GAP_MM: f64 = 1.5;
+/// How much deeper or higher (mm) than the selection the other side may be.
+const UNEVEN_MM: f64 = 10.0;
+
+/// The vertices of `mesh` whose mirror images lie where the `selected` ones do, ascending.
+///
+/// # Errors
+/// [`RoiError::NoFace`] for a selection without a triangle, [`RoiError::NoCounterpart`] where the other side
+/// has nothing there, or the work was cancelled.
+pub fn counterpart(
+    mesh: &TriangleMesh,
+    selected: &[u32],
+    plane: &Plane,
+    task: &Task,
+) -> Result<Vec<u32>, RoiError> {
+    let selection = &Selection::new(selected, mesh.vertices_mm().len())?;
+    let is_whole = |t: &&[u32; 3]| t.iter().all(|v| selection.contains(*v));
+    let patch: Vec<[u32; 3]> = mesh.triangles().iter().filter(is_whole).copied().collect();
+    if patch.is_empty() {
+        return Err(RoiError::NoFace {
+            selected: selection.indices().len(),
+        });
+    }
+    let facing = |corners: [Vector; 3]| {
+        let [a, b, c] = corners;
+        cross(minus(b, a), minus(c, a))
+    };
+    let sum = patch.iter().fold([0.0; 3], |sum, t| {
+        plus_scaled(sum, 1.0, facing(mesh.corners_mm(*t)))
+    });
+    let inward = crate::vector::unit(sum.map(|v| -v));
+    let area = Area::of(mesh, &patch, Frame::along(inward)).ok_or(RoiError::NoCounterpart)?;
+    task.check()?;
+    let places = selection
+        .indices()
+        .iter()
+        .map(|v| mesh.vertices_mm()[*v as usize]);
+    let images = places.map(|place| plane.mirrored(place));
+    let space = Space::of(images).ok_or(RoiError::NoSelection)?;
+    let other = Neighbourhood::around(mesh, &space.wider(UNEVEN_MM), task)?;
+    let mut normals = vec![[0.0; 3]; other.vertices_mm.len()];
+    for triangle in &other.triangles {
+        let facing = other.facing(*triangle);
+        for vertex in triangle {
+            let normal = &mut normals[*vertex as usize];
+            *normal = plus_scaled(*normal, 1.0, facing);
+        }
+    }
+    let looks_in = plane.mirrored_direction(inward);
+    let vertices = other.vertices_mm.iter().zip(&normals).zip(&other.of_mesh);
+    let found = vertices.filter(|((place, normal), _)| {
+        dot(**normal, looks_in) < 0.0 && area.has(plane.mirrored(**place))
+    });
+    let mut found: Vec<u32> = found.map(|(_, vertex)| *vertex).collect();
+    found.sort_unstable();
+    if found.len() < 3 {
+        return Err(RoiError::NoCounterpart);
+    }
+    Ok(found)
+}
+
+/// An area of the plane across a direction, and a range along it.
+struct Area {
+    frame: Frame,
+    space: Space,
+    cell_mm: f64,
+    shape: [usize; 2],
+    is_in: Vec<bool>,
+}
+
+impl Area {
+    /// What triangles cover, with gaps and holes.
+    fn of(mesh: &TriangleMesh, patch: &[[u32; 3]], frame: Frame) -> Option<Self> {
+        let corners = |t: &[u32; 3]| mesh.corners_mm(*t).map(|place| frame.of(place));
+        let space = Space::of(patch.iter().flat_map(corners))?.wider(2.0 * GAP_MM);
+        let size = [0, 1].map(|axis| space.high[axis] - space.low[axis]);
+        let cell_mm = CELL_MM.max((size[0] * size[1] / MOST_CELLS).sqrt());
+        let shape = size.map(|size| (size / cell_mm).ceil() as usize + 1);
+        let mut area = Self {
+            frame,
+            space,
+            cell_mm,
+            shape,
+            is_in: vec![false; shape[0] * shape[1]],
+        };
+        for triangle in patch {
+            let corners = corners(triangle).map(|corner| area.cell(corner));
+            for corner in corners {
+                let [i, j] = [corner[0], corner[1]].map(|c| c.round() as usize);
+                area.is_in[j * shape[0] + i] = true;
+            }
+            for (i, j, _) in covered(corners, shape) {
+                area.is_in[j * shape[0] + i] = true;
+            }
+        }
+        area.close();
+        Some(area)
+    }
+
+    /// A place's coordinates in cells.
+    fn cell(&self, in_frame: Vector) -> Vector {
+        [0, 1, 2].map(|axis| (in_frame[axis] - self.space.low[axis]) / self.cell_mm)
+    }
+
+    /// Closes gaps: what cannot be reached from outside by a disc of that radius is in.
+    fn close(&mut self) {
+        let radius = (GAP_MM / self.cell_mm).ceil() as usize;
+        let is_wide = self.grown(&self.is_in, radius);
+        let is_outside = self.reached_from_border(&is_wide);
+        let is_shut = self.grown(&is_outside, radius);
+        for (is_in, is_shut) in self.is_in.iter_mut().zip(is_shut) {
+            *is_in |= !is_shut;
+        }
+    }
+
+    /// With all cells within `radius` of those that are set.
+    fn grown(&self, is_set: &[bool], radius: usize) -> Vec<bool> {
+        let [columns, rows] = self.shape;
+        let mut grown = is_set.to_vec();
+        let squared = radius * radius;
+        for at in (0..is_set.len()).filter(|at| is_set[*at]) {
+            let (i, j) = (at % columns, at / columns);
+            for y in j.saturating_sub(radius)..(j + radius + 1).min(rows) {
+                for x in i.saturating_sub(radius)..(i + radius + 1).min(columns) {
+                    if x.abs_diff(i).pow(2) + y.abs_diff(j).pow(2) <= squared {
+                        grown[y * columns + x] = true;
+                    }
+                }
+            }
+        }
+        grown
+    }
+
+    /// The cells that are not set and hang together with the border.
+    fn reached_from_border(&self, is_set: &[bool]) -> Vec<bool> {
+        let [columns, rows] = self.shape;
+        let mut is_reached = vec![false; is_set.len()];
+        let is_border = |at: &usize| {
+            let (i, j) = (at % columns, at / columns);
+            i == 0 || j == 0 || i + 1 == columns || j + 1 == rows
+        };
+        let mut todo: Vec<usize> = (0..is_set.len()).filter(is_border).collect();
+        while let Some(at) = todo.pop() {
+            if is_set[at] || is_reached[at] {
+                continue;
+            }
+            is_reached[at] = true;
+            let (i, j) = (at % columns, at / columns);
+            todo.extend((i > 0).then(|| at - 1));
+            todo.extend((i + 1 < columns).then(|| at + 1));
+            todo.extend((j > 0).then(|| at - columns));
+            todo.extend((j + 1 < rows).then(|| at + columns));
+        }
+        is_reached
+    }
+
+    /// Whether a place (mm) lies in the area, about as deep as the triangles.
+    fn has(&self, place: Vector) -> bool {
+        let in_frame = self.frame.of(place);
+        let depth = in_frame[2];
+        if depth < self.space.low[2] - UNEVEN_MM || depth > self.space.high[2] + UNEVEN_MM {
+            return false;
+        }
+        let [i, j, _] = self.cell(in_frame).map(f64::round);
+        let [columns, rows] = self.shape;
+        let is_on = i >= 0.0 && j >= 0.0 && (i as usize) < columns && (j as usize) < rows;
+        is_on && self.is_in[j as usize * columns + i as usize]
+    }
+}

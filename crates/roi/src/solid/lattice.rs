@@ -1,0 +1,111 @@
+//! Where the cutter's values are taken.
+
+use bonemesh_volume::Affine;
+
+use super::crop::Space;
+use crate::vector::{Vector, cross, dot, plus_scaled, unit};
+
+/// Largest and smallest step between nodes (mm).
+const STEPS_MM: [f64; 2] = [0.5, 0.06];
+/// At least so many steps in the thickness, and in the patch's width.
+const IN_THICKNESS: f64 = 5.0;
+const IN_WIDTH: f64 = 12.0;
+/// Most nodes of a lattice.
+const MOST_NODES: f64 = 4e7;
+
+/// Three directions of length 1 at right angles, right-handed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame(pub(super) [Vector; 3]);
+
+impl Frame {
+    /// The patient's own.
+    pub(super) const PATIENT: Self = Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+
+    /// One whose third direction is this.
+    pub(crate) fn along(third: Vector) -> Self {
+        let least = (0..3).min_by(|a, b| third[*a].abs().total_cmp(&third[*b].abs()));
+        let mut beside = [0.0; 3];
+        beside[least.unwrap_or(0)] = 1.0;
+        let first = unit(cross(beside, third));
+        Self([first, cross(third, first), third])
+    }
+
+    /// A place's coordinates in it.
+    pub(crate) fn of(&self, place: Vector) -> Vector {
+        self.0.map(|axis| dot(axis, place))
+    }
+
+    /// The place of coordinates in it.
+    pub(super) fn place(&self, [x, y, z]: Vector) -> Vector {
+        let [first, second, third] = self.0;
+        plus_scaled(plus_scaled(first.map(|v| x * v), y, second), z, third)
+    }
+}
+
+/// Nodes at equal steps along the directions of a frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lattice {
+    pub(super) frame: Frame,
+    /// The first node's coordinates in the frame.
+    pub(super) first: Vector,
+    pub(super) step_mm: f64,
+    pub(super) shape: [usize; 3],
+}
+
+/// How far apart nodes are for a patch and a thickness.
+pub(super) fn step_mm(area_mm2: f64, thickness_mm: f64) -> f64 {
+    let [largest, least] = STEPS_MM;
+    let step = (thickness_mm / IN_THICKNESS).min(area_mm2.sqrt() / IN_WIDTH);
+    step.clamp(least, largest)
+}
+
+/// The step with which a lattice of that size has not too many nodes.
+pub(super) fn affordable_mm(space: &Space, step_mm: f64) -> f64 {
+    let size = [0, 1, 2].map(|axis| space.high[axis] - space.low[axis]);
+    step_mm.max((size.iter().product::<f64>() / MOST_NODES).cbrt())
+}
+
+impl Lattice {
+    /// Fills `space`, a box in the frame; moved by parts of a step (`shift`).
+    pub(super) fn around(frame: Frame, space: Space, step_mm: f64, shift: Vector) -> Self {
+        let nodes = |axis: usize| {
+            let size = space.high[axis] - space.low[axis];
+            (size / step_mm).ceil() as usize + 3
+        };
+        Self {
+            frame,
+            first: [0, 1, 2].map(|axis| space.low[axis] - (1.0 - shift[axis]) * step_mm),
+            step_mm,
+            shape: [0, 1, 2].map(nodes),
+        }
+    }
+
+    pub(super) fn place(&self, node: [usize; 3]) -> Vector {
+        let at = [0, 1, 2].map(|axis| self.first[axis] + self.step_mm * node[axis] as f64);
+        self.frame.place(at)
+    }
+
+    /// From nodes to millimetres.
+    pub(super) fn affine(&self) -> Affine {
+        let [first, second, third] = self.frame.0.map(|axis| axis.map(|v| self.step_mm * v));
+        Affine::from_axes(first, second, third, self.frame.place(self.first))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_along_a_direction_is_right_handed_and_gives_places_back() {
+        for third in [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.6, -0.48, 0.64]] {
+            let frame = Frame::along(third);
+            let [a, b, c] = frame.0;
+            assert!((dot(cross(a, b), c) - 1.0).abs() < 1e-12);
+            let place = [3.0, -7.0, 11.0];
+            let back = frame.place(frame.of(place));
+            assert!((0..3).all(|i| (back[i] - place[i]).abs() < 1e-12));
+            assert!((frame.of(third)[2] - 1.0).abs() < 1e-12);
+        }
+    }
+}

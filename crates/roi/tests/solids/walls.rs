@@ -1,0 +1,99 @@
+//! Solids cut out of bodies whose walls are known.
+
+use std::collections::HashSet;
+use std::f64::consts::PI;
+
+use bonemesh_mesh::TriangleMesh;
+
+use crate::bodies::{STEP_MM, body, length, selected, shell, solid, volume_mm3};
+
+#[test]
+fn a_cap_of_a_shell_has_the_volume_of_the_cone_for_any_thickness() {
+    let shell = shell();
+    let half_angle = 0.5_f64;
+    // Across the lattice: along it, a whole ring of vertices would lie just inside or outside.
+    let along = |[x, y, z]: [f64; 3]| (2.0 * x - y + 3.0 * z) / 14.0_f64.sqrt();
+    let is_in = |p: [f64; 3]| length(p) > 17.0 && along(p) > length(p) * half_angle.cos();
+    let patch = selected(&shell, is_in);
+    for thickness in [1.5, 3.0, 6.0, 9.0] {
+        let solid = solid(&shell, &patch, thickness);
+        let inner = 20.0_f64 - thickness.min(6.0);
+        let cone = 2.0 * PI * (1.0 - half_angle.cos()) / 3.0;
+        let expected = cone * (20.0_f64.powi(3) - inner.powi(3));
+        let part = volume_mm3(&solid) / expected;
+        assert!((part - 1.0).abs() < 0.01, "{thickness} mm: {part}");
+        for place in solid.mesh.vertices_mm() {
+            let radius = length(*place);
+            assert!(
+                (inner - 0.1..20.1).contains(&radius),
+                "{thickness} mm: {radius}"
+            );
+            let angle = (along(*place) / radius).acos();
+            let beyond_mm = (angle - half_angle) * radius;
+            // At the front about half an edge, which is as near as selected vertices say it.
+            let most_mm = if radius > 19.95 { 0.6 } else { 0.8 } * STEP_MM;
+            assert!(
+                beyond_mm < most_mm,
+                "{thickness} mm: {beyond_mm} at {radius}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_front_is_the_patch_to_the_last_bit() {
+    let shell = shell();
+    let is_in = |p: [f64; 3]| length(p) > 17.0 && p[0] > 15.0;
+    let patch = selected(&shell, is_in);
+    let solid = solid(&shell, &patch, 4.0);
+    let corners = |mesh: &TriangleMesh, t: &[u32; 3]| {
+        let mut corners = mesh.corners_mm(*t).map(|c| c.map(f64::to_bits));
+        corners.sort_unstable();
+        corners
+    };
+    let triangles = solid.mesh.triangles().iter();
+    let cut: HashSet<_> = triangles.map(|t| corners(&solid.mesh, t)).collect();
+    let well_inside = |t: &&[u32; 3]| {
+        let places = shell.corners_mm(**t);
+        places.iter().all(|p| length(*p) > 17.0 && p[0] > 15.6)
+    };
+    let front: Vec<_> = shell.triangles().iter().filter(well_inside).collect();
+    assert!(front.len() > 500);
+    let kept = front.iter().filter(|t| cut.contains(&corners(&shell, t)));
+    assert_eq!(kept.count(), front.len());
+}
+
+#[test]
+fn walls_of_a_tube_are_cut_upright_around_its_curl() {
+    let tube = body([16.0, 16.0, 20.0], |[x, y, z]| {
+        let radius = x.hypot(y);
+        (15.0 - radius).min(radius - 9.0).min(18.0 - z.abs())
+    });
+    // Almost half around, 20 mm high, from between two layers of the lattice to between two others.
+    let is_in = |[x, y, z]: [f64; 3]| {
+        x.hypot(y) > 12.0 && y.atan2(x).abs() < 1.4 && (z + 0.0575).abs() < 10.0
+    };
+    let patch = selected(&tube, is_in);
+    for thickness in [2.0, 6.0, 8.0] {
+        let solid = solid(&tube, &patch, thickness);
+        let inner = 15.0_f64 - thickness.min(6.0);
+        let expected = 1.4 * (15.0_f64.powi(2) - inner.powi(2)) * 20.0;
+        let part = volume_mm3(&solid) / expected;
+        assert!((part - 1.0).abs() < 0.01, "{thickness} mm: {part}");
+    }
+}
+
+#[test]
+fn a_plate_is_cut_straight_through_or_part_of_the_way() {
+    let plate = body([25.0, 25.0, 3.0], |[x, y, z]| {
+        (24.0 - x.abs()).min(24.0 - y.abs()).min(2.0 - z.abs())
+    });
+    let is_in = |[x, y, z]: [f64; 3]| z > 1.5 && x.hypot(y) < 10.0;
+    let patch = selected(&plate, is_in);
+    for thickness in [1.0, 4.0, 5.0] {
+        let solid = solid(&plate, &patch, thickness);
+        let expected = PI * 100.0 * thickness.min(4.0);
+        let part = volume_mm3(&solid) / expected;
+        assert!((part - 1.0).abs() < 0.01, "{thickness} mm: {part}");
+    }
+}
