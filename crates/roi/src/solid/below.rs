@@ -1,7 +1,7 @@
 //! What lies below the patch, or on it, along the surface's own normals.
 //!
 //! How far each node is inside is the least of its distances from the lid, the bottom and the sides.
-//! Blocks of nodes that are far from the patch are passed over.
+//! Blocks of nodes that are far from all of these, on one side or the other, are not looked at node by node.
 
 use bonemesh_task::Task;
 use rayon::prelude::*;
@@ -12,7 +12,7 @@ use crate::RoiError;
 use crate::vector::Vector;
 
 /// Nodes along a block's side.
-const BLOCK: usize = 8;
+const BLOCK: usize = 4;
 /// How much faster than a place the nearest place of the patch moves, at most: below a curled patch it
 /// does so.
 const MOST_SLOPE: f64 = 3.0;
@@ -69,6 +69,19 @@ impl Below<'_> {
         let slices = values.len() / (columns * rows);
         let end = [columns, rows, first[2] + slices];
         let range = |axis: usize| first[axis]..(first[axis] + BLOCK).min(end[axis]);
+        let is_within = self.kept_off.is_none()
+            && seen.depth_mm > self.top_mm + around_mm
+            && seen.depth_mm < seen.bottom_mm - MOST_SLOPE * around_mm
+            && seen.inside_mm > MOST_SLOPE * around_mm;
+        if is_within {
+            for k in range(2) {
+                for j in range(1) {
+                    let row = ((k - first[2]) * rows + j) * columns;
+                    values[row + first[0]..row + range(0).end].fill(1.0);
+                }
+            }
+            return;
+        }
         for k in range(2) {
             for j in range(1) {
                 let mut within_mm = reach_mm;

@@ -10,10 +10,11 @@ use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{BooleanEngine, Error, MeshGL64, OpType};
 
 use crate::RoiError;
-use crate::vector::Vector;
+use crate::vector::{Vector, plus_scaled};
 
-/// Shorter edges at the cut are collapsed: in a file's 32-bit coordinates they would make triangles meet.
-const TOLERANCE_MM: f64 = 1e-4;
+/// Shorter edges at the cut are collapsed: in a file's 32-bit coordinates they would make triangles meet. By
+/// try: the larger, the more of the front goes with them.
+const TOLERANCES_MM: [f64; 4] = [1e-4, 1e-4, 4e-4, 1.6e-3];
 /// How often the cancel switch is looked at.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
 
@@ -24,6 +25,15 @@ pub(super) struct Body {
 }
 
 impl Body {
+    /// The same body so far away.
+    pub(super) fn moved(&self, by_mm: Vector) -> Self {
+        let vertices = self.vertices_mm.iter();
+        Self {
+            vertices_mm: vertices.map(|v| plus_scaled(*v, 1.0, by_mm)).collect(),
+            triangles: self.triangles.clone(),
+        }
+    }
+
     pub(super) fn of(mesh: TriangleMesh) -> Self {
         let (vertices_mm, triangles) = mesh.into_parts();
         Self {
@@ -42,48 +52,76 @@ pub(super) enum Source {
     Second,
 }
 
-/// The common part of two bodies, and the source of each of its triangles.
-///
-/// What is closed but touches itself goes by exact rational numbers, which take longer.
-///
-/// # Errors
-/// [`RoiError::Open`] for a first body that is not closed, [`RoiError::Cut`], or the work was cancelled.
-pub(super) fn common(
-    first: &Body,
-    second: &Body,
-    task: &Task,
-) -> Result<(Body, Vec<Source>), RoiError> {
-    let id = Manifold::reserve_ids(2);
-    let import = |body: &Body, id: u32| {
-        let mesh = exported(body, id);
+/// A body that others are cut out of.
+pub(super) struct Bone {
+    body: Manifold,
+    /// Strictly: every edge with two triangles.
+    is_manifold: bool,
+    /// What its triangles are known by.
+    id: u32,
+}
+
+impl Bone {
+    /// What is closed but touches itself goes by exact rational numbers, which take longer.
+    ///
+    /// # Errors
+    /// [`RoiError::Open`] for a body that is not closed, or [`RoiError::Cut`].
+    pub(super) fn of(body: &Body) -> Result<Self, RoiError> {
+        let id = Manifold::reserve_ids(1);
+        let mesh = exported(body, id, TOLERANCES_MM[0]);
         let strict = Manifold::from_mesh_gl64(&mesh);
-        match strict.status() {
-            Error::NotManifold => (Manifold::from_mesh_gl64_robust(&mesh), false),
-            _ => (strict, true),
-        }
-    };
-    let ((a, is_manifold), (b, _)) = rayon::join(|| import(first, id), || import(second, id + 1));
-    task.check()?;
-    // Lids that overlap in their plane are far from the cut, so they are no reason for the slow way.
-    let engine = if is_manifold {
-        BooleanEngine::Exact
-    } else {
-        BooleanEngine::Robust
-    };
-    for (body, is_first) in [(&a, true), (&b, false)] {
+        let is_manifold = strict.status() != Error::NotManifold;
+        let body = if is_manifold {
+            strict
+        } else {
+            Manifold::from_mesh_gl64_robust(&mesh)
+        };
         match body.status() {
-            Error::NoError => {}
-            Error::NotClosed if is_first => return Err(RoiError::Open),
-            other => return Err(RoiError::Cut(other.to_str())),
+            Error::NoError => Ok(Self {
+                body,
+                is_manifold,
+                id,
+            }),
+            Error::NotClosed => Err(RoiError::Open),
+            other => Err(RoiError::Cut(other.to_str())),
         }
     }
-    let cut = until_cancelled(task, |token| {
-        a.boolean_with_engine_and_token(&b, OpType::Intersect, engine, Some(token))
-    })?;
-    match cut.status() {
-        Error::NoError => Ok(imported(&cut, id)),
-        Error::Cancelled => Err(Cancelled.into()),
-        other => Err(RoiError::Cut(other.to_str())),
+
+    /// What it has in common with a cutter, and the source of each triangle.
+    ///
+    /// `attempt`: how often it was tried before.
+    ///
+    /// # Errors
+    /// [`RoiError::Cut`], or the work was cancelled.
+    pub(super) fn common(
+        &self,
+        cutter: &Body,
+        attempt: u32,
+        task: &Task,
+    ) -> Result<(Body, Vec<Source>), RoiError> {
+        let tolerance_mm = TOLERANCES_MM[attempt as usize % TOLERANCES_MM.len()];
+        let cutter = exported(cutter, Manifold::reserve_ids(1), tolerance_mm);
+        let cutter = Manifold::from_mesh_gl64(&cutter);
+        if cutter.status() != Error::NoError {
+            return Err(RoiError::Cut(cutter.status().to_str()));
+        }
+        task.check()?;
+        // Lids that overlap in their plane are far from the cut, so they are no reason for the slow way.
+        let engine = if self.is_manifold {
+            BooleanEngine::Exact
+        } else {
+            BooleanEngine::Robust
+        };
+        let cut = until_cancelled(task, |token| {
+            let operation = OpType::Intersect;
+            self.body
+                .boolean_with_engine_and_token(&cutter, operation, engine, Some(token))
+        })?;
+        match cut.status() {
+            Error::NoError => Ok(imported(&cut, self.id)),
+            Error::Cancelled => Err(Cancelled.into()),
+            other => Err(RoiError::Cut(other.to_str())),
+        }
     }
 }
 
@@ -107,7 +145,7 @@ fn until_cancelled<R>(task: &Task, work: impl FnOnce(&CancelToken) -> R) -> Resu
     Ok(result)
 }
 
-fn exported(body: &Body, id: u32) -> MeshGL64 {
+fn exported(body: &Body, id: u32, tolerance_mm: f64) -> MeshGL64 {
     MeshGL64 {
         num_prop: 3,
         vert_properties: body.vertices_mm.as_flattened().to_vec(),
@@ -121,7 +159,7 @@ fn exported(body: &Body, id: u32) -> MeshGL64 {
         run_index: vec![0, 3 * body.triangles.len() as u64],
         // Each triangle is a face of its own: none may be joined with another.
         face_id: (0..body.triangles.len() as u64).collect(),
-        tolerance: TOLERANCE_MM,
+        tolerance: tolerance_mm,
         ..MeshGL64::default()
     }
 }

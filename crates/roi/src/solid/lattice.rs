@@ -6,12 +6,16 @@ use super::crop::Space;
 use crate::vector::{Vector, cross, dot, plus_scaled, unit};
 
 /// Largest and smallest step between nodes (mm).
-const STEPS_MM: [f64; 2] = [0.5, 0.06];
+const STEPS_MM: [f64; 2] = [0.8, 0.06];
 /// At least so many steps in the thickness, and in the patch's width.
 const IN_THICKNESS: f64 = 5.0;
 const IN_WIDTH: f64 = 12.0;
 /// Most nodes of a lattice.
 const MOST_NODES: f64 = 4e7;
+
+/// Steps from a box to the first node: as unlike one another as can be, so that what lies along the axes
+/// does not pass through nodes.
+const BEFORE: [f64; 3] = [0.381_966_011, 0.245_122_334, 0.180_827_487];
 
 /// Three directions of length 1 at right angles, right-handed.
 #[derive(Clone, Copy, Debug)]
@@ -66,15 +70,15 @@ pub(super) fn affordable_mm(space: &Space, step_mm: f64) -> f64 {
 }
 
 impl Lattice {
-    /// Fills `space`, a box in the frame; moved by parts of a step (`shift`).
-    pub(super) fn around(frame: Frame, space: Space, step_mm: f64, shift: Vector) -> Self {
+    /// Fills `space`, a box in the frame.
+    pub(super) fn around(frame: Frame, space: Space, step_mm: f64) -> Self {
         let nodes = |axis: usize| {
             let size = space.high[axis] - space.low[axis];
             (size / step_mm).ceil() as usize + 3
         };
         Self {
             frame,
-            first: [0, 1, 2].map(|axis| space.low[axis] - (1.0 - shift[axis]) * step_mm),
+            first: [0, 1, 2].map(|axis| space.low[axis] - BEFORE[axis] * step_mm),
             step_mm,
             shape: [0, 1, 2].map(nodes),
         }

@@ -9,7 +9,7 @@
 //!    the nodes of a [`lattice`].
 //! 6. [`boolean`]: what bone and cutter have in common.
 //! 7. [`finish`]: the part of it at the patch, checked as a file would hold it. Where 32-bit coordinates
-//!    make triangles meet, the cutter's lattice is shifted a little and all is done again.
+//!    make triangles meet, the cutter is moved by microns and cuts again.
 
 mod below;
 mod boolean;
@@ -30,7 +30,7 @@ use bonemesh_task::Task;
 use rustc_hash::FxHashSet;
 
 use self::below::Below;
-use self::boolean::{Body, common};
+use self::boolean::{Body, Bone};
 pub(crate) use self::crop::{Neighbourhood, Space};
 pub(crate) use self::lattice::Frame;
 pub(crate) use self::straight::covered;
@@ -49,10 +49,12 @@ use crate::selection::Selection;
 use crate::vector::{Vector, plus_scaled};
 use crate::{ClearanceMm, Direction, RoiError, ThicknessMm};
 
-/// Lattices that are tried.
+/// Places of the cutter that are tried.
 const TRIES: u32 = 12;
-/// How far (mm) around the selection, and around what is cut, is looked at.
+/// How far (mm) around the selection, and around a plate, is looked at.
 const BESIDE_MM: f64 = 3.0;
+/// How far (mm) beyond what is cut the bone is closed with lids.
+const LID_MM: f64 = 0.5;
 /// Steps that the lid lies above the patch, so that nothing of it lies in the bone's surface.
 const LID_STEPS: f64 = 2.5;
 /// Longest edges, in steps, of triangles that places are looked up on.
@@ -66,7 +68,9 @@ const LEAST_WIDTH_STEPS: f64 = 1.5;
 const SMOOTHED_MM: f64 = 1.0;
 /// How far what is cut bulges, in parts of the thickness: at a crease, between what lies below its two sides.
 const BULGE: f64 = 0.3;
-/// Parts of a step by which the lattice is shifted from try to try: multiples of these never come back.
+/// How far (mm) the cutter is moved from try to try, at most: less than a scan can tell.
+const MOVE_MM: f64 = 0.02;
+/// Parts of that by which it is moved along each axis: multiples of these never come back.
 const SHIFTS: [f64; 3] = [
     0.618_033_988_749_895,
     0.754_877_666_246_693,
@@ -206,7 +210,9 @@ impl Cut<'_> {
         let space = self.space(frame).ok_or(RoiError::NothingCut)?;
         self.step_mm = affordable_mm(&space, self.step_mm);
         let around = self.space(Frame::PATIENT).ok_or(RoiError::NothingCut)?;
-        let part = Part::of(mesh, &around.wider(BESIDE_MM), task)?;
+        let is_plate = self.request.direction == Direction::Outward;
+        let beside_mm = if is_plate { BESIDE_MM } else { LID_MM };
+        let part = Part::of(mesh, &around.wider(beside_mm), task)?;
         let is_front = part.is_of(is_patch);
         let bone = TriangleMesh::new(part.vertices_mm, part.triangles)?;
         if matches!(
@@ -217,22 +223,20 @@ impl Cut<'_> {
             let thickness_mm = self.request.thickness.mm();
             end_at_far_side(&mut self.sheet, &tree, straight, thickness_mm, task)?;
         }
-        let is_plate = self.request.direction == Direction::Outward;
         let whole = is_plate.then(|| Sheet::whole(bone.clone()));
         let cutter = self.cutter(whole.as_ref(), task)?;
-        let bone = Body::of(bone);
+        let bone = (!is_plate).then(|| Bone::of(&Body::of(bone))).transpose()?;
+        let lattice = Lattice::around(frame, space, self.step_mm);
+        let cutter = Body::of(cutter.surface(&lattice, task)?);
         for attempt in 0..TRIES {
-            let lattice = Lattice::around(frame, space, self.step_mm, shift(attempt));
-            let cutter = Body::of(cutter.surface(&lattice, task)?);
-            let cut = if is_plate {
-                cutter
-            } else {
-                let cut = common(&bone, &cutter, task)?;
-                match self.request.direction {
-                    // Behind hollows it does not hang together with the patch.
-                    Direction::Through => cut.0,
-                    _ => at_patch(cut, &is_front),
+            let cutter = cutter.moved(shift_mm(attempt));
+            let cut = match &bone {
+                None => cutter,
+                // Behind hollows it does not hang together with the patch.
+                Some(bone) if self.request.direction == Direction::Through => {
+                    bone.common(&cutter, attempt, task)?.0
                 }
+                Some(bone) => at_patch(bone.common(&cutter, attempt, task)?, &is_front),
             };
             if let Finished::Sound(mesh) = finished(cut, task)? {
                 return Ok(mesh);
@@ -303,7 +307,10 @@ impl Cut<'_> {
     }
 }
 
-/// Where the lattice of a try begins, in parts of a step.
-fn shift(attempt: u32) -> [f64; 3] {
-    SHIFTS.map(|part| (f64::from(attempt + 1) * part).fract())
+/// How far (mm) the cutter is moved for a try; not at all for the first.
+fn shift_mm(attempt: u32) -> [f64; 3] {
+    SHIFTS.map(|part| {
+        let turn = (f64::from(attempt) * part).fract();
+        MOVE_MM * if turn > 0.5 { turn - 1.0 } else { turn }
+    })
 }
