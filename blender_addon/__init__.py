@@ -8,9 +8,10 @@ def register() -> None:
     """Called by Blender when the add-on is enabled."""
     problem = library.problem()
     if problem is None:
-        from . import operators, panels, properties
+        from . import operators, panels, properties, region_properties
 
         properties.register()
+        region_properties.register()
         operators.register()
         panels.register()
     else:
@@ -26,8 +27,9 @@ def unregister() -> None:
     if panel_without_library.is_registered():
         panel_without_library.unregister()
     else:
-        from . import operators, panels, properties
+        from . import operators, panels, properties, region_properties
 
         panels.unregister()
         operators.unregister()
+        region_properties.unregister()
         properties.unregister()

@@ -82,6 +82,25 @@ class RegionInputs:
         return cls(directory / f"{name}.stl", name, thickness_mm)
 
 
+def region_options(
+    properties: Any, view: tuple[float, float, float] | None
+) -> dict[str, Any]:
+    """The keyword arguments of bonemesh.select_roi; `view`: where the user looks, in the patient."""
+    if properties.method == "thesis":
+        return {"method": "thesis"}
+    options = {"method": "solid", "hidden": properties.hidden}
+    options["direction"] = properties.direction
+    if properties.direction == "outward":
+        options["clearance_mm"] = as_typed(properties.clearance)
+    if properties.direction == "view":
+        if view is None:
+            raise RefusalError(
+                "there is no 3D view to look along; choose another direction, or press the button in the view's sidebar"
+            )
+        options["direction"] = view
+    return options
+
+
 def uses_edge_points(properties: Any) -> bool:
     """Whether the method makes its surface of edge points."""
     return properties.method not in METHODS_OF_VOXELS

@@ -12,6 +12,9 @@ from .operators.cancel import BONEMESH_OT_cancel
 from .operators.check_mesh import BONEMESH_OT_check_mesh
 from .operators.choose_ct_directory import BONEMESH_OT_choose_ct_directory
 from .operators.choose_mesh_directory import BONEMESH_OT_choose_mesh_directory
+from .operators.measure_thickness import BONEMESH_OT_measure_thickness
+from .operators.mirror_roi import BONEMESH_OT_mirror_roi
+from .operators.plane_from_vertices import BONEMESH_OT_plane_from_vertices
 from .operators.render_surface_mesh import BONEMESH_OT_render_surface_mesh
 from .operators.select_roi import BONEMESH_OT_select_roi
 
@@ -64,6 +67,44 @@ def draw_progress(layout: UILayout, running: job.Job) -> None:
     column.label(text=running.title)
     column.progress(factor=fraction, text=stage.capitalize(), type="BAR")
     column.operator(BONEMESH_OT_cancel.bl_idname, icon="X")
+
+
+class BONEMESH_PT_region(Panel):
+    """How the region is cut, and its counterpart on the other side."""
+
+    bl_label = "Region"
+    bl_parent_id = "BONEMESH_PT_segment_ct"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Segment CT"
+    bl_options: ClassVar[set[str]] = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Context) -> None:
+        """Draws thickness, cut and mirror."""
+        properties = context.scene.bonemesh_region
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        column = layout.column()
+        column.operator(BONEMESH_OT_measure_thickness.bl_idname)
+        if properties.measured:
+            column.label(text=properties.measured, icon="DRIVER_DISTANCE")
+        column = layout.column()
+        column.prop(properties, "method")
+        cut = column.column()
+        cut.active = properties.method == "solid"
+        cut.prop(properties, "direction")
+        if properties.direction == "outward":
+            cut.prop(properties, "clearance")
+        cut.prop(properties, "hidden")
+        column = layout.column()
+        column.active = properties.method == "solid"
+        column.prop(properties, "plane")
+        if properties.plane == "given":
+            column.prop(properties, "plane_numbers")
+        column.operator(BONEMESH_OT_plane_from_vertices.bl_idname)
+        column.prop(properties, "mirror_back")
+        column.operator(BONEMESH_OT_mirror_roi.bl_idname)
 
 
 class BONEMESH_PT_after_care(Panel):
@@ -135,7 +176,12 @@ class BONEMESH_PT_advanced(Panel):
         column.prop(properties, "center_in_world")
 
 
-CLASSES = (BONEMESH_PT_segment_ct, BONEMESH_PT_after_care, BONEMESH_PT_advanced)
+CLASSES = (
+    BONEMESH_PT_segment_ct,
+    BONEMESH_PT_region,
+    BONEMESH_PT_after_care,
+    BONEMESH_PT_advanced,
+)
 
 
 def register() -> None:

@@ -23,7 +23,7 @@ METHODS = [
     (
         "alpha",
         "Alpha",
-        "3D Delaunay tetrahedra of the edge points, those no larger than alpha kept; alpha comes from the points' mean distance. Select Region of Interest needs it",
+        "3D Delaunay tetrahedra of the edge points, those no larger than alpha kept; alpha comes from the points' mean distance",
     ),
     (
         "labelled",

@@ -28,6 +28,7 @@ AFTER_CARE = "after_care"
 CHECK = "check"
 STATE = "state"
 
+REGIONS = "Regions of Interest"
 BONE_COLOUR = (0.86, 0.80, 0.68, 1.0)
 REGION_COLOUR = (0.85, 0.25, 0.10, 1.0)
 
@@ -65,13 +66,20 @@ def add_bone(
     return placed
 
 
-def add_region(context: Any, name: str, region: bonemesh.Mesh, source: Source) -> Any:
-    """Adds a region where it lies in its source, however that was moved."""
+def add_region(
+    context: Any,
+    name: str,
+    region: bonemesh.Mesh,
+    source: Source,
+    options: dict[str, Any],
+) -> Any:
+    """Adds a region where it lies in its source, however that was moved, to the regions' own collection.
+
+    All that it was made of is kept with it: a script can make it again.
+    """
     placed = add_object(context, name, region, "Bonemesh Region", REGION_COLOUR)
     placed.matrix_world = source.world_from_patient @ placed.matrix_world
-    link(
-        context, placed, bpy.data.collections.get(source.collection, context.collection)
-    )
+    link(context, placed, regions(context))
     for key in ("bonemesh_threshold_hu", "bonemesh_series_uid", "bonemesh_spacing_mm"):
         if key in source.properties:
             placed[key] = source.properties[key]
@@ -79,7 +87,21 @@ def add_region(context: Any, name: str, region: bonemesh.Mesh, source: Source) -
     keep(placed, "method", region.report["method"])
     keep(placed, "thickness_mm", region.report["thickness_mm"])
     keep(placed, "source", source.name)
+    keep(placed, "selected", [int(vertex) for vertex in source.selected])
+    for key in ("direction", "clearance_mm", "hidden", "mirror", "mirror_back"):
+        keep(placed, key, options.get(key))
     return placed
+
+
+def regions(context: Any) -> Any:
+    """The collection of the regions, made with the first of them."""
+    collection = bpy.data.collections.get(REGIONS)
+    if collection is None:
+        collection = bpy.data.collections.new(REGIONS)
+    if collection.name not in context.scene.collection.children:
+        context.scene.collection.children.link(collection)
+        context.view_layer.update()  # else what is linked to it does not count as shown
+    return collection
 
 
 def keep_check(name: str, report: dict[str, Any]) -> None:

@@ -16,6 +16,8 @@ import numpy as np
 from mathutils import Matrix, Vector
 from numpy.typing import NDArray
 
+from .inputs import RefusalError
+
 PATIENT_MM = "patient_mm"
 CENTRE_MM = "bonemesh_centre_mm"
 
@@ -34,6 +36,16 @@ class Source:
     collection: str
     properties: dict[str, Any]
     """The object's own `bonemesh_...` properties."""
+
+    def patient_direction(self, world: Any) -> tuple[float, float, float] | None:
+        """A direction of the world in the patient's frame."""
+        if world is None:
+            return None
+        patient_from_world = np.linalg.inv(
+            np.asarray(self.world_from_patient, dtype=np.float64)
+        )
+        x, y, z = patient_from_world[:3, :3] @ np.asarray(world, dtype=np.float64)
+        return (float(x), float(y), float(z))
 
 
 def read(active: Any, depsgraph: Any = None) -> Source:
@@ -58,6 +70,16 @@ def read(active: Any, depsgraph: Any = None) -> Source:
         )
     finally:
         shown.to_mesh_clear()
+
+
+def read_with_selection(active: Any) -> Source:
+    """The same of an object in which something must be selected."""
+    source = read(active)
+    if len(source.selected) == 0:
+        raise RefusalError(
+            f'no vertex of "{source.name}" is selected; select some in Edit Mode, for example with the lasso'
+        )
+    return source
 
 
 def as_exported(active: Any, depsgraph: Any) -> Source:

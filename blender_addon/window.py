@@ -8,6 +8,7 @@ from types import TracebackType
 from typing import Any, Self
 
 import bpy
+from mathutils import Vector
 
 from .job import Progress
 
@@ -24,6 +25,14 @@ def redraw_views(context: Any) -> None:
     """Lets the panels show the newest progress."""
     for _, area in views(context):
         area.tag_redraw()
+
+
+def view_direction(context: Any) -> Any:
+    """Where the user looks, in the world, in the view that was pressed in or else the first; None without one."""
+    view = getattr(context, "region_data", None)
+    if view is None:
+        view = next((area.spaces.active.region_3d for _, area in views(context)), None)
+    return None if view is None else view.view_rotation @ Vector((0.0, 0.0, -1.0))
 
 
 def show_status(context: Any, text: str) -> None:

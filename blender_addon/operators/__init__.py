@@ -12,6 +12,9 @@ from .check_mesh import BONEMESH_OT_check_mesh
 from .choose_ct_directory import BONEMESH_OT_choose_ct_directory
 from .choose_mesh_directory import BONEMESH_OT_choose_mesh_directory
 from .choose_series import BONEMESH_OT_choose_series
+from .measure_thickness import BONEMESH_OT_measure_thickness
+from .mirror_roi import BONEMESH_OT_mirror_roi
+from .plane_from_vertices import BONEMESH_OT_plane_from_vertices
 from .render_surface_mesh import BONEMESH_OT_render_surface_mesh
 from .scan_ct_directory import BONEMESH_OT_scan_ct_directory
 from .select_roi import BONEMESH_OT_select_roi
@@ -25,6 +28,9 @@ CLASSES = (
     BONEMESH_OT_choose_mesh_directory,
     BONEMESH_OT_render_surface_mesh,
     BONEMESH_OT_select_roi,
+    BONEMESH_OT_mirror_roi,
+    BONEMESH_OT_plane_from_vertices,
+    BONEMESH_OT_measure_thickness,
     BONEMESH_OT_check_mesh,
     BONEMESH_OT_cancel,
 )

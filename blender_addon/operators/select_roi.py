@@ -1,26 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """bonemesh.select_roi: the selected vertices, and the bone under them, as a mesh of its own."""
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import bonemesh
 import bpy
 from bpy.types import Context, Operator
 
-from .. import scene, selection
-from ..inputs import RefusalError, RegionInputs
+from .. import scene, selection, window
+from ..inputs import RegionInputs, region_options
 from ..job import Job
 from .background import BackgroundOperator
 
-METHOD = "thesis"
 
+class RegionOperator(BackgroundOperator):
+    """What Select Region of Interest and its mirrored sister share."""
 
-class BONEMESH_OT_select_roi(BackgroundOperator, Operator):
-    """Cut the region under the selected vertices out as its own mesh, save it as STL and add it to the scene"""
-
-    bl_idname = "bonemesh.select_roi"
-    bl_label = "Select Region of Interest"
-    bl_options: ClassVar[set[str]] = {"UNDO"}
+    title = ""
 
     @classmethod
     def poll(cls, context: Context) -> bool:
@@ -33,17 +29,24 @@ class BONEMESH_OT_select_roi(BackgroundOperator, Operator):
             return False
         return True
 
+    def mirror_options(self, _context: Context) -> dict[str, Any]:
+        """Keyword arguments of bonemesh.select_roi for the other side."""
+        return {}
+
     def prepare(self, context: Context) -> Job[bonemesh.Mesh]:
         """Checks the panel's fields and copies the active object's mesh and selection."""
         self._inputs = inputs = RegionInputs.read(
             context.scene.bonemesh, bpy.path.abspath
         )
         context.view_layer.update()  # a script may just have moved the object
-        self._source = source = selection.read(context.active_object)
-        if len(source.selected) == 0:
-            raise RefusalError(
-                f'no vertex of "{source.name}" is selected; select some in Edit Mode, for example with the lasso'
-            )
+        self._source = source = selection.read_with_selection(context.active_object)
+        view = window.view_direction(context)
+        self._options = options = {
+            **region_options(
+                context.scene.bonemesh_region, source.patient_direction(view)
+            ),
+            **self.mirror_options(context),
+        }
 
         def work(job: Job) -> bonemesh.Mesh:
             whole = bonemesh.Mesh(source.vertices, source.triangles)
@@ -51,7 +54,7 @@ class BONEMESH_OT_select_roi(BackgroundOperator, Operator):
                 whole,
                 source.selected,
                 thickness_mm=inputs.thickness_mm,
-                method=METHOD,
+                **options,
                 progress=job.note_progress,
                 cancel=job.cancel_token,
             )
@@ -61,9 +64,24 @@ class BONEMESH_OT_select_roi(BackgroundOperator, Operator):
             )
             return region
 
-        return Job("Select Region of Interest", work)
+        return Job(self.title, work)
 
     def finish(self, context: Context, result: bonemesh.Mesh) -> str:
         """Adds the region where it was taken from; the selection and the active object stay."""
-        scene.add_region(context, self._inputs.name, result, self._source)
-        return f"{self._inputs.output}: {len(result.triangles):,} triangles"
+        scene.add_region(
+            context, self._inputs.name, result, self._source, self._options
+        )
+        said = f"{self._inputs.output}: {len(result.triangles):,} triangles"
+        dropped = result.report.get("dropped_pieces", 0)
+        if dropped:
+            said += f"; {dropped} pieces of the selection left out (crumbs, or hidden behind others)"
+        return said
+
+
+class BONEMESH_OT_select_roi(RegionOperator, Operator):
+    """Cut the region under the selected vertices out as its own mesh, save it as STL and add it to the scene"""
+
+    bl_idname = "bonemesh.select_roi"
+    bl_label = "Select Region of Interest"
+    bl_options: ClassVar[set[str]] = {"UNDO"}
+    title = "Select Region of Interest"

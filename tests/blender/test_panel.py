@@ -61,11 +61,26 @@ def test_what_the_images_hold_is_shown_below_their_path(panel: dict[str, Any]) -
 
 def test_the_fields_are_in_the_published_order(panel: dict[str, Any]) -> None:
     assert without_boxes(panel["main"]) == FIELDS
-    assert panel["tabs"] == ["Segment CT"] * 3
+    assert panel["tabs"] == ["Segment CT"] * 4
+
+
+def test_the_region_is_measured_cut_and_mirrored_from_a_part_of_its_own(
+    panel: dict[str, Any],
+) -> None:
+    assert panel["region"] == [
+        "Measure Thickness Here",
+        "Method [method]",
+        "Direction [direction]",
+        "Take Hidden Pieces [hidden]",
+        "Mirror Plane [plane]",
+        "Plane from Three Vertices",
+        "Put at the Selection [mirror_back]",
+        "Mirror Region of Interest",
+    ]
 
 
 def test_advanced_settings_are_there_but_closed(panel: dict[str, Any]) -> None:
-    assert panel["closed"] == [False, True, True]
+    assert panel["closed"] == [False, True, True, True]
     assert [text.split("[")[1].rstrip("]") for text in panel["advanced"]] == ADVANCED
 
 

@@ -65,7 +65,9 @@ def test_a_region_says_where_it_comes_from(
     properties = blender.run("select_region", ct=ct, fields={})["properties"]
     assert properties["bonemesh_thickness_mm"] == 9.0
     assert properties["bonemesh_threshold_hu"] == 350.0
-    assert properties["bonemesh_method"] == "thesis"
+    assert properties["bonemesh_method"] == "solid"
+    assert properties["bonemesh_direction"] == "normal"
+    assert len(properties["bonemesh_selected"]) > 3
     assert properties["bonemesh_source"] == "bone"
     assert properties["bonemesh_version"] == bonemesh.__version__
     (series,) = bonemesh.find_series(ct)

@@ -70,6 +70,7 @@ def main(zip: str, out: str, ct: str) -> dict[str, Any]:
     properties = stage.fill_panel(ct, out)
     panels = [
         bpy.types.BONEMESH_PT_segment_ct,
+        bpy.types.BONEMESH_PT_region,
         bpy.types.BONEMESH_PT_after_care,
         bpy.types.BONEMESH_PT_advanced,
     ]
@@ -83,6 +84,7 @@ def main(zip: str, out: str, ct: str) -> dict[str, Any]:
         "advanced": drawn("BONEMESH_PT_advanced"),
         "methods": [item.identifier for item in methods.enum_items],
         "method": properties.method,
+        "region": drawn("BONEMESH_PT_region"),
         "after_care": drawn("BONEMESH_PT_after_care"),
         "limits": {
             name: [field.hard_min, field.hard_max, field.default]

@@ -101,7 +101,9 @@ def regions(folder: Path) -> dict[str, str]:
     bpy.context.scene.bonemesh.mesh_name = "bone"
     bpy.ops.bonemesh.render_surface_mesh()
     stage.select_front(bpy.context.view_layer.objects.active)
+    bpy.context.scene.bonemesh_region.method = "thesis"
     answers["a mesh without slices"] = region()
+    bpy.context.scene.bonemesh_region.method = "solid"
     bpy.context.scene.bonemesh.method = "alpha"
     bpy.ops.bonemesh.render_surface_mesh()
     bone = bpy.context.view_layer.objects.active

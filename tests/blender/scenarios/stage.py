@@ -142,10 +142,12 @@ class Gate:
 def pressed(name: str) -> Any:
     """A stand-in for the operator that a button press makes, with the real one's methods."""
     operators = import_module(f"{MODULE}.operators")
-    background = operators.background.BackgroundOperator
     real = getattr(operators, f"BONEMESH_OT_{name}")
 
-    class Pressed(background):
+    # The real one's methods without Blender's own type, which makes no instances.
+    inherited = tuple(base for base in real.__bases__ if base is not bpy.types.Operator)
+
+    class Pressed(*inherited):
         prepare = real.prepare
         finish = real.finish
 

@@ -1,0 +1,170 @@
+"""Regions as solids, their other sides, and planes of symmetry."""
+
+import math
+
+import bonemesh
+import numpy as np
+import pytest
+
+RADIUS = 34.0
+
+
+@pytest.fixture(scope="module")
+def shell() -> bonemesh.Mesh:
+    return bonemesh.render(bonemesh.phantom("sphere-shell", coarser=1.5))
+
+
+@pytest.fixture(scope="module")
+def cap(shell: bonemesh.Mesh) -> np.ndarray:
+    """Vertices of the outer surface on the left side."""
+    radius = np.linalg.norm(shell.vertices, axis=1)
+    outer = radius > np.median(radius)
+    return np.flatnonzero(outer & (shell.vertices[:, 0] > 0.85 * radius))
+
+
+def certificate(mesh):
+    check = bonemesh.check(mesh)
+    assert check["watertight"] and check["manifold"], check["reasons"]
+    assert check["self_intersections"] == 0
+    return check
+
+
+def test_the_solid_is_closed_and_its_front_is_the_meshs_own(shell, cap):
+    solid = bonemesh.select_roi(shell, cap, thickness_mm=3)
+    check = certificate(solid)
+    report = solid.report
+    assert report["method"] == "solid" and report["direction"] == "normal"
+    assert report["thickness_mm"] == 3 and report["selected"] == len(cap)
+    assert report["volume_mm3"] == pytest.approx(check["volume_mm3"], rel=1e-6)
+    assert report["volume_mm3"] == pytest.approx(3 * report["patch_mm2"], rel=0.15)
+    assert report["inward"][0] == pytest.approx(-1, abs=0.02)
+    own = set(map(tuple, shell.vertices.tolist()))
+    front = [tuple(v) in own for v in solid.vertices.tolist()]
+    assert sum(front) > 0.5 * len(cap)
+
+
+def test_directions(shell, cap):
+    middle = np.linalg.norm(shell.vertices[cap], axis=1).mean()
+    plate = bonemesh.select_roi(
+        shell, cap, thickness_mm=2, direction="outward", clearance_mm=1
+    )
+    certificate(plate)
+    radii = np.linalg.norm(plate.vertices, axis=1)
+    assert radii.min() == pytest.approx(middle + 1, abs=0.15)
+    assert radii.max() == pytest.approx(middle + 3, abs=0.2)
+    through = bonemesh.select_roi(shell, cap, thickness_mm=90, direction="through")
+    assert certificate(through)["components"] == 2
+    assert through.vertices[:, 0].min() < 0 < through.vertices[:, 0].max()
+    straight = bonemesh.select_roi(
+        shell, cap, thickness_mm=90, direction=np.array([-2.0, 0, 0])
+    )
+    assert certificate(straight)["components"] == 1
+    assert straight.vertices[:, 0].min() > 0
+
+
+def test_hidden_pieces_are_left_out_unless_asked_for(shell, cap):
+    sideways = np.hypot(shell.vertices[:, 1], shell.vertices[:, 2])
+    both = np.flatnonzero(sideways < 10)
+    seen = bonemesh.select_roi(shell, both, thickness_mm=2, direction=(-1, 0, 0))
+    assert seen.vertices[:, 0].min() > 0 and seen.report["dropped_pieces"] > 0
+    all_of_it = bonemesh.select_roi(shell, both, thickness_mm=2, hidden=True)
+    assert certificate(all_of_it)["components"] >= 2
+
+
+@pytest.mark.parametrize(
+    "plane",
+    ["x", (1, 0, 0, 0), (2, 0, 0, 0), np.array([[0, 0, 0], [0, 1, 0], [0, 0, 1]])],
+)
+def test_the_other_side_is_taken_and_put_where_asked(shell, cap, plane):
+    here = bonemesh.select_roi(shell, cap, thickness_mm=3)
+    other = bonemesh.select_roi(shell, cap, thickness_mm=3, mirror=plane)
+    certificate(other)
+    assert other.vertices[:, 0].max() < 0
+    assert other.report["mirror"]["normal"] == pytest.approx([1, 0, 0], abs=1e-6)
+    back = bonemesh.select_roi(
+        shell, cap, thickness_mm=3, mirror=plane, mirror_back=True
+    )
+    certificate(back)
+    assert back.vertices[:, 0].min() > 0
+    assert back.report["volume_mm3"] == pytest.approx(
+        here.report["volume_mm3"], rel=0.1
+    )
+
+
+def test_mirrored_meshes_keep_their_outside(shell):
+    mirrored = bonemesh.mirror(shell, (0, 0, 2, 20))
+    assert mirrored.vertices[:, 2].mean() == pytest.approx(20, abs=0.5)
+    assert mirrored.report["offset_mm"] == pytest.approx(10)
+    before, after = bonemesh.check(shell), bonemesh.check(mirrored)
+    assert after["volume_mm3"] == pytest.approx(before["volume_mm3"], rel=1e-5)
+    assert after["printable"] == before["printable"]
+
+
+def test_the_heads_own_plane_is_found_tilted_and_shifted():
+    head = bonemesh.render(bonemesh.phantom("head", coarser=3.0))
+    angle = math.radians(17)
+    turn = np.array(
+        [
+            [math.cos(angle), -math.sin(angle), 0],
+            [math.sin(angle), math.cos(angle), 0],
+            [0, 0, 1],
+        ]
+    )
+    tilted = bonemesh.Mesh(head.vertices @ turn.T + [30, -20, 500], head.triangles)
+    *normal, offset = bonemesh.symmetry_plane(tilted)
+    expected = turn @ [1, 0, 0]
+    sign = np.sign(np.dot(normal, expected))
+    degrees = math.degrees(math.acos(min(1, abs(np.dot(normal, expected)))))
+    assert degrees < 0.3
+    assert sign * offset == pytest.approx(expected @ [30, -20, 500], abs=0.3)
+
+
+def test_the_thickness_under_a_selection(shell, cap):
+    found = bonemesh.local_thickness(shell, cap)
+    radii = np.sort(np.linalg.norm(shell.vertices, axis=1))
+    wall = radii[-100] - radii[100]
+    assert found["min_mm"] <= found["median_mm"] <= found["max_mm"]
+    assert found["median_mm"] == pytest.approx(wall, abs=0.3)
+    flat = bonemesh.Mesh([[0, 0, 0], [9, 0, 0], [0, 9, 0]], [[0, 1, 2]])
+    assert bonemesh.local_thickness(flat, [0, 1, 2]) is None
+
+
+@pytest.mark.parametrize(
+    ("keywords", "says"),
+    [
+        ({"direction": "down"}, "normal, through, outward"),
+        ({"direction": (0, 0, 0)}, "not all 0"),
+        ({"direction": 5}, "three numbers"),
+        ({"clearance_mm": -1, "direction": "outward"}, "0 to 20"),
+        ({"clearance_mm": 1}, "outward"),
+        ({"mirror": "w"}, "auto"),
+        ({"mirror": (0, 0, 0, 1)}, "not 0"),
+        ({"mirror": 3}, "nx, ny, nz, d"),
+        ({"mirror_back": True}, "mirror"),
+        ({"method": "thesis", "hidden": True}, "solid"),
+        ({"method": "thesis", "mirror": "x"}, "solid"),
+    ],
+)
+def test_choices_that_cannot_be(shell, cap, keywords, says):
+    with pytest.raises(bonemesh.BonemeshError) as caught:
+        bonemesh.select_roi(shell, cap, thickness_mm=3, **keywords)
+    assert says in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_a_hole_in_the_mesh_is_filled_first_and_told(shell, cap):
+    radius = np.linalg.norm(shell.vertices, axis=1)
+    away = np.flatnonzero((radius > np.median(radius)) & (shell.vertices[:, 2] > 30))
+    is_cut = np.isin(shell.triangles, away[:1]).any(axis=1)
+    near = np.flatnonzero(is_cut)
+    assert len(near) > 2
+    opened = bonemesh.Mesh(shell.vertices, shell.triangles[~is_cut])
+    selected = np.flatnonzero(
+        (radius > np.median(radius)) & (shell.vertices[:, 2] > 0.85 * radius)
+    )
+    try:
+        solid = bonemesh.select_roi(opened, selected, thickness_mm=2)
+    except bonemesh.BonemeshError as error:
+        assert "open" in str(error)
+        return
+    certificate(solid)
+    assert solid.report["filled_holes"] == 1
