@@ -100,7 +100,6 @@ def regions(context: Any) -> Any:
         collection = bpy.data.collections.new(REGIONS)
     if collection.name not in context.scene.collection.children:
         context.scene.collection.children.link(collection)
-        context.view_layer.update()  # else what is linked to it does not count as shown
     return collection
 
 
@@ -194,6 +193,7 @@ def viewport_material(name: str, colour: tuple[float, ...]) -> Any:
 def link(context: Any, placed: Any, collection: Any) -> None:
     """Into `collection`, or into the scene's own where that one is not shown."""
     collection.objects.link(placed)
+    context.view_layer.update()  # before that, nothing in a new collection counts as shown
     if context.view_layer.objects.get(placed.name) is None:
         collection.objects.unlink(placed)
         context.scene.collection.objects.link(placed)

@@ -59,6 +59,7 @@ pub(crate) fn symmetry_plane(
 }
 
 /// A plane: a name, four numbers or three places.
+#[derive(Clone, Copy)]
 pub(crate) struct Choice(pub(crate) PlaneChoice);
 
 impl FromPyObject<'_, '_> for Choice {
