@@ -72,7 +72,9 @@ impl FromStr for Direction {
         }
         let numbers = name.split(',').map(|number| number.trim().parse());
         match numbers.collect::<Result<Vec<f64>, _>>().as_deref() {
-            Ok([x, y, z]) => Self::along([*x, *y, *z]),
+            Ok([x, y, z]) => {
+                Self::along([*x, *y, *z]).map_err(|_| RoiError::Direction(name.into()))
+            }
             _ => Err(RoiError::Direction(name.into())),
         }
     }
