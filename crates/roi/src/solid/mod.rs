@@ -53,8 +53,9 @@ use crate::{ClearanceMm, Direction, RoiError, ThicknessMm};
 const TRIES: u32 = 12;
 /// How far (mm) around the selection, and around a plate, is looked at.
 const BESIDE_MM: f64 = 3.0;
-/// How far (mm) beyond what is cut the bone is closed with lids.
+/// How far (mm, and steps) beyond what is cut the bone is closed with lids: farther than the lattice goes.
 const LID_MM: f64 = 0.5;
+const LID_BEYOND_STEPS: f64 = 4.0;
 /// Steps that the lid lies above the patch, so that nothing of it lies in the bone's surface.
 const LID_STEPS: f64 = 2.5;
 /// Longest edges, in steps, of triangles that places are looked up on.
@@ -149,11 +150,13 @@ pub fn select_solid(
     let inward = patch.inward(&near);
     let step_mm = step_mm(patch.area_mm2, request.thickness.mm());
     let is_patch = whole_triangles(&near, &patch);
-    let mut fine = Fine {
+    let fine = Fine {
         near,
         has_triangle: patch.has_triangle,
         is_selected,
     };
+    let space = fine.patch_space().ok_or(RoiError::NothingCut)?;
+    let mut fine = fine.restricted(&space.wider(2.0 * BESIDE_MM));
     let longest_mm = (EDGE_STEPS * step_mm).min(patch.area_mm2.sqrt() / EDGES_IN_WIDTH);
     fine.refine(&space.wider(EDGES_BESIDE * longest_mm), longest_mm);
     let outline = Outline::of(&fine, BESIDE_MM, task)?;
@@ -211,7 +214,12 @@ impl Cut<'_> {
         self.step_mm = affordable_mm(&space, self.step_mm);
         let around = self.space(Frame::PATIENT).ok_or(RoiError::NothingCut)?;
         let is_plate = self.request.direction == Direction::Outward;
-        let beside_mm = if is_plate { BESIDE_MM } else { LID_MM };
+        let beside_mm = LID_MM.max(LID_BEYOND_STEPS * self.step_mm);
+        let beside_mm = if is_plate {
+            BESIDE_MM.max(beside_mm)
+        } else {
+            beside_mm
+        };
         let part = Part::of(mesh, &around.wider(beside_mm), task)?;
         let is_front = part.is_of(is_patch);
         let bone = TriangleMesh::new(part.vertices_mm, part.triangles)?;

@@ -15,6 +15,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use bonemesh_task::{Cancelled, Task};
+use rayon::prelude::*;
 
 use super::crop::Neighbourhood;
 use super::refine::Fine;
@@ -33,7 +34,7 @@ const HALF: f64 = 0.5;
 const SAME_SIDE: f64 = 0.5;
 /// Where a whole body is selected there is no outline, and all is far inside of it.
 const FAR_INSIDE_MM: f64 = 1e3;
-/// Vertices done between two looks at the cancel switch.
+/// Vertices done between two looks at the cancel switch, and at least by one worker.
 const STRIDE: usize = 1 << 12;
 
 /// The patch and what is around it, as far as a cut reaches.
@@ -157,11 +158,11 @@ impl Neighbours {
     }
 
     /// Means of values over each vertex and its neighbours.
-    fn means<T: Copy>(
+    fn means<T: Copy + Send + Sync>(
         &self,
         values: &[T],
-        plus: impl Fn(T, T) -> T,
-        part: impl Fn(T, f64) -> T,
+        plus: impl Fn(T, T) -> T + Sync,
+        part: impl Fn(T, f64) -> T + Sync,
     ) -> Vec<T> {
         let mean = |vertex: usize| {
             let around = self.at(vertex);
@@ -170,7 +171,9 @@ impl Neighbours {
             let sum = others.fold(plus(values[vertex], values[vertex]), &plus);
             part(sum, around.len() as f64 + 2.0)
         };
-        (0..values.len()).map(mean).collect()
+        let vertices = 0..values.len();
+        let means = vertices.into_par_iter().with_min_len(STRIDE).map(mean);
+        means.collect()
     }
 }
 

@@ -211,9 +211,10 @@ impl Pieces {
             (is_free, self.areas_mm2[**piece as usize])
         };
         let order = |a: &(bool, f64), b: &(bool, f64)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1));
+        let ranked = large.iter().rev().map(|piece| (rank(&piece), piece));
         // The first of equal ones.
-        let first = large.iter().rev().max_by(|a, b| order(&rank(a), &rank(b)));
-        first.map_or([0.0; 3], |piece| self.outward(*piece, near))
+        let first = ranked.max_by(|(a, _), (b, _)| order(a, b));
+        first.map_or([0.0; 3], |(_, piece)| self.outward(*piece, near))
     }
 
     fn of_piece<'a>(&'a self, piece: u32, near: &'a Neighbourhood) -> Vec<[u32; 3]> {

@@ -23,6 +23,43 @@ pub(super) struct Fine {
 }
 
 impl Fine {
+    /// The box of the patch.
+    pub(super) fn patch_space(&self) -> Option<Space> {
+        let triangles = self.near.triangles.iter().zip(&self.has_triangle);
+        let own = triangles.filter(|(_, has)| **has).flat_map(|(t, _)| *t);
+        Space::of(own.map(|v| self.near.vertices_mm[v as usize]))
+    }
+
+    /// What of it touches `space`: a lasso that sees through a head picks up much more than the patch that was
+    /// meant.
+    pub(super) fn restricted(&self, space: &Space) -> Self {
+        let mut numbers = vec![u32::MAX; self.near.vertices_mm.len()];
+        let mut members: Vec<usize> = Vec::new();
+        let mut number = |vertex: u32| {
+            let number = &mut numbers[vertex as usize];
+            if *number == u32::MAX {
+                *number = members.len() as u32;
+                members.push(vertex as usize);
+            }
+            *number
+        };
+        let places = &self.near.vertices_mm;
+        let all = self.near.triangles.iter().zip(&self.has_triangle);
+        let (triangles, has_triangle) = all
+            .filter(|(t, _)| space.touches(t.map(|v| places[v as usize])))
+            .map(|(t, has)| (t.map(&mut number), *has))
+            .unzip();
+        Self {
+            near: Neighbourhood {
+                vertices_mm: members.iter().map(|v| places[*v]).collect(),
+                triangles,
+                of_mesh: members.iter().map(|v| self.near.of_mesh[*v]).collect(),
+            },
+            has_triangle,
+            is_selected: members.iter().map(|v| self.is_selected[*v]).collect(),
+        }
+    }
+
     /// Halves the edges of triangles that touch `space` until none is longer than `longest_mm`.
     pub(super) fn refine(&mut self, space: &Space, longest_mm: f64) {
         for _ in 0..ROUNDS {
