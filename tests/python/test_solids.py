@@ -152,19 +152,25 @@ def test_choices_that_cannot_be(shell, cap, keywords, says):
 
 
 def test_a_hole_in_the_mesh_is_filled_first_and_told(shell, cap):
-    radius = np.linalg.norm(shell.vertices, axis=1)
-    away = np.flatnonzero((radius > np.median(radius)) & (shell.vertices[:, 2] > 30))
-    is_cut = np.isin(shell.triangles, away[:1]).any(axis=1)
-    near = np.flatnonzero(is_cut)
-    assert len(near) > 2
+    whole = bonemesh.select_roi(shell, cap, thickness_mm=2)
+    assert whole.report["filled_holes"] == 0
+    middle = cap[np.argmax(shell.vertices[cap, 0])]
+    is_cut = (shell.triangles == middle).any(axis=1)
     opened = bonemesh.Mesh(shell.vertices, shell.triangles[~is_cut])
-    selected = np.flatnonzero(
-        (radius > np.median(radius)) & (shell.vertices[:, 2] > 0.85 * radius)
-    )
-    try:
-        solid = bonemesh.select_roi(opened, selected, thickness_mm=2)
-    except bonemesh.BonemeshError as error:
-        assert "open" in str(error)
-        return
+    solid = bonemesh.select_roi(opened, cap, thickness_mm=2)
     certificate(solid)
     assert solid.report["filled_holes"] == 1
+    assert solid.report["volume_mm3"] == pytest.approx(
+        whole.report["volume_mm3"], rel=0.02
+    )
+
+
+def test_triangles_that_share_no_vertices_are_joined_first(shell, cap):
+    corners = shell.vertices[shell.triangles].reshape(-1, 3)
+    soup = bonemesh.Mesh(corners, np.arange(len(corners)).reshape(-1, 3))
+    selected = np.flatnonzero(np.isin(shell.triangles.ravel(), cap))
+    solid = bonemesh.select_roi(soup, selected, thickness_mm=2)
+    certificate(solid)
+    assert solid.report["filled_holes"] == 0
+    whole = bonemesh.select_roi(shell, cap, thickness_mm=2)
+    assert solid.report["volume_mm3"] == pytest.approx(whole.report["volume_mm3"])

@@ -60,7 +60,7 @@ pub use metal::MetalReport;
 pub use mirror::{ChosenPlane, PlaneChoice, PlaneReport};
 pub use panics::hush_foreign_panics;
 pub use picture::{check_picture_target, write_histogram};
-pub use region::{Mirror, RegionRequest, RegionResult, select_roi};
+pub use region::{Mirror, RegionRequest, RegionResult, select_roi, select_rois};
 pub use region_report::{RegionReport, SolidReport, ThesisReport};
 pub use render::{Rendered, mesh_cloud, point_cloud, render, render_volume};
 pub use report::{CheckReport, LeftOutIslands, RenderReport, Seconds, check as check_topology};

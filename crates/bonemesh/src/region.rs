@@ -1,16 +1,17 @@
 //! The region of interest, with its report.
 
+use std::collections::HashMap;
 use std::num::NonZeroUsize;
 use std::time::Instant;
 
 use bonemesh_mesh::{HoleLimits, TriangleMesh, fill_holes};
 use bonemesh_roi::{
     ClearanceMm, Direction, Method, RoiError, Solid, SolidRequest, ThicknessMm, counterpart,
-    select_region, select_solid,
+    select_region, select_solid, select_solids,
 };
 use bonemesh_task::{Task, pool};
 
-use crate::mirror::{ChosenPlane, PlaneChoice};
+use crate::mirror::PlaneChoice;
 use crate::region_report::{RegionReport, SolidReport, ThesisReport};
 use crate::report::check;
 use crate::{Error, choices};
@@ -108,67 +109,127 @@ pub fn select_roi(
             let report = ThesisReport::new(&region);
             (region.mesh, Some(report), None)
         } else {
-            let (mesh, report) = solid_region(mesh, selected, request, task)?;
+            let solid = solids(mesh, selected, request, false, task)?.pop();
+            let (mesh, report) = solid.ok_or(RoiError::NothingCut)?;
             (mesh, None, Some(report))
         };
-        let topology = check(&mesh, task)?;
-        let seconds = clock.elapsed().as_secs_f64();
-        let report = RegionReport::new(request, thesis, solid, &topology, seconds);
-        Ok(RegionResult { mesh, report })
+        RegionResult::of(mesh, thesis, solid, request, &clock, task)
     })
 }
 
-fn solid_region(
+/// The same with a solid for each piece of the selection that does not touch the others, the largest piece
+/// first. What a report counts of the selection, and the seconds, are those of all of them.
+///
+/// # Errors
+/// As [`select_roi`]; [`Error::NotForMethod`] for the thesis's method, too.
+pub fn select_rois(
     mesh: &TriangleMesh,
     selected: &[u32],
     request: &RegionRequest,
     task: &Task,
-) -> Result<(TriangleMesh, SolidReport), Error> {
-    let Some(mirror) = request.mirror else {
-        let (solid, filled_holes) = solid_with_holes_filled(mesh, selected, request, None, task)?;
-        return Ok(SolidReport::of(solid, filled_holes, None));
-    };
-    let chosen = mirror.plane.choose(mesh, request.threads, task)?;
-    let other = counterpart(mesh, selected, &chosen.plane, task)?;
-    let (mut solid, filled_holes) =
-        solid_with_holes_filled(mesh, &other, request, Some(&chosen), task)?;
-    if mirror.back {
-        solid.mesh = solid.mesh.mirrored(&chosen.plane);
+) -> Result<Vec<RegionResult>, Error> {
+    if request.method == Method::Thesis {
+        return Err(choices::not_for_region("`separate`", request.method));
     }
-    Ok(SolidReport::of(solid, filled_holes, Some(chosen.report)))
+    request.refuse_unused()?;
+    pool(request.threads)?.install(|| {
+        let clock = Instant::now();
+        let solids = solids(mesh, selected, request, true, task)?.into_iter();
+        let region =
+            |(mesh, solid)| RegionResult::of(mesh, None, Some(solid), request, &clock, task);
+        solids.map(region).collect()
+    })
 }
 
-/// Cuts; where the surface is open, fills its holes first. Gives how many these were.
-fn solid_with_holes_filled(
+impl RegionResult {
+    fn of(
+        mesh: TriangleMesh,
+        thesis: Option<ThesisReport>,
+        solid: Option<SolidReport>,
+        request: &RegionRequest,
+        clock: &Instant,
+        task: &Task,
+    ) -> Result<Self, Error> {
+        let topology = check(&mesh, task)?;
+        let seconds = clock.elapsed().as_secs_f64();
+        let report = RegionReport::new(request, thesis, solid, &topology, seconds);
+        Ok(Self { mesh, report })
+    }
+}
+
+/// The solids on the side that is asked for: one, or one for each piece.
+fn solids(
     mesh: &TriangleMesh,
     selected: &[u32],
     request: &RegionRequest,
-    mirror: Option<&ChosenPlane>,
+    is_each: bool,
     task: &Task,
-) -> Result<(Solid, usize), Error> {
-    // What is given for the selection's side is mirrored for the other.
-    let direction = match (request.direction, mirror) {
-        (Direction::Along(d), Some(chosen)) => {
-            Direction::along(chosen.plane.mirrored_direction(d))?
-        }
-        (direction, _) => direction,
-    };
-    let request = SolidRequest {
+) -> Result<Vec<(TriangleMesh, SolidReport)>, Error> {
+    let mut solid_request = SolidRequest {
         thickness: request.thickness,
-        direction,
+        direction: request.direction,
         clearance: request.clearance,
         with_hidden: request.with_hidden,
     };
-    match select_solid(mesh, selected, &request, task) {
+    let Some(mirror) = request.mirror else {
+        let (solids, filled) = with_holes_filled(mesh, selected, &solid_request, is_each, task)?;
+        let solids = solids.into_iter();
+        return Ok(solids
+            .map(|solid| SolidReport::of(solid, filled, None))
+            .collect());
+    };
+    let chosen = mirror.plane.choose(mesh, request.threads, task)?;
+    // What is given for the selection's side is mirrored for the other.
+    if let Direction::Along(direction) = request.direction {
+        solid_request.direction = Direction::along(chosen.plane.mirrored_direction(direction))?;
+    }
+    let other = counterpart(mesh, selected, &chosen.plane, task)?;
+    let (solids, filled) = with_holes_filled(mesh, &other, &solid_request, is_each, task)?;
+    let placed = |mut solid: Solid| {
+        if mirror.back {
+            solid.mesh = solid.mesh.mirrored(&chosen.plane);
+        }
+        SolidReport::of(solid, filled, Some(chosen.report))
+    };
+    Ok(solids.into_iter().map(placed).collect())
+}
+
+/// Cuts; where the surface is open, joins vertices at one place and fills the holes first. Gives how many
+/// these were.
+fn with_holes_filled(
+    mesh: &TriangleMesh,
+    selected: &[u32],
+    request: &SolidRequest,
+    is_each: bool,
+    task: &Task,
+) -> Result<(Vec<Solid>, usize), Error> {
+    let cut = |mesh: &TriangleMesh, selected: &[u32]| {
+        if is_each {
+            select_solids(mesh, selected, request, task)
+        } else {
+            Ok(vec![select_solid(mesh, selected, request, task)?])
+        }
+    };
+    match cut(mesh, selected) {
         Err(RoiError::Open) => {
             let filled = fill_holes(mesh, HoleLimits::default(), task)?;
-            // Vertices at one place become one, and then the selection's numbers are others.
-            if filled.filled == 0 || filled.mesh.vertices_mm().len() != mesh.vertices_mm().len() {
-                return Err(RoiError::Open.into());
-            }
-            let solid = select_solid(&filled.mesh, selected, &request, task)?;
-            Ok((solid, filled.filled))
+            let selected = renumbered(selected, mesh, &filled.mesh);
+            Ok((cut(&filled.mesh, &selected)?, filled.filled))
         }
-        solid => Ok((solid?, 0)),
+        solids => Ok((solids?, 0)),
     }
+}
+
+/// The vertices of another mesh that lie where these of the first do, in the 32-bit coordinates of files.
+fn renumbered(selected: &[u32], from: &TriangleMesh, to: &TriangleMesh) -> Vec<u32> {
+    // Adding 0 makes one zero of the two.
+    let key = |place: &[f64; 3]| place.map(|v| (v as f32 + 0.0).to_bits());
+    let numbers: HashMap<_, _> = (0_u32..)
+        .zip(to.vertices_mm())
+        .map(|(number, place)| (key(place), number))
+        .collect();
+    let places = selected.iter().map(|v| &from.vertices_mm()[*v as usize]);
+    places
+        .filter_map(|place| numbers.get(&key(place)).copied())
+        .collect()
 }

@@ -7,7 +7,7 @@ mod common;
 use std::fs;
 use std::path::Path;
 
-use common::command::{assert_refused, bonemesh, head, json, message, text};
+use common::command::{assert_refused, bone, bonemesh, head, message, text};
 use tempfile::TempDir;
 
 #[test]
@@ -181,14 +181,7 @@ fn files_that_are_no_mesh_and_no_selection_are_refused() {
     fs::write(at("sel.txt"), "0\n1\ntwo\n").unwrap();
     assert_refused(&bonemesh(&["check", text(&at("bad.stl"))]), "bad.stl");
     assert_refused(&bonemesh(&["check", text(&at("none.stl"))]), "none.stl");
-    let bone = at("bone.stl");
-    json(&bonemesh(&[
-        "render",
-        text(&head()),
-        "-o",
-        text(&bone),
-        "--json",
-    ]));
+    let bone = bone(folder.path());
     let out = at("region.stl");
     let cut = |selection: &str| {
         bonemesh(&[

@@ -4,24 +4,11 @@
 
 mod common;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use common::command::{bonemesh, head, json, text};
+use common::command::{bone, bonemesh, json, text};
 use serde_json::Value;
 use tempfile::TempDir;
-
-/// The phantom head's bone as a file.
-fn bone(folder: &TempDir) -> PathBuf {
-    let bone = folder.path().join("bone.stl");
-    json(&bonemesh(&[
-        "render",
-        text(&head()),
-        "-o",
-        text(&bone),
-        "--json",
-    ]));
-    bone
-}
 
 /// A region under a ball at the left of the vault, its report and its check.
 fn region(bone: &Path, options: &[&str]) -> (Value, Value) {
@@ -50,7 +37,7 @@ fn range_of_x(check: &Value) -> [f64; 2] {
 #[test]
 fn solids_plates_and_other_sides_of_a_head() {
     let folder = TempDir::new().unwrap();
-    let bone = bone(&folder);
+    let bone = bone(folder.path());
     let (report, solid) = region(&bone, &["--thickness=8"]);
     assert_eq!(report["method"], "solid");
     assert_eq!(report["direction"], "normal");
@@ -80,7 +67,7 @@ fn solids_plates_and_other_sides_of_a_head() {
 #[test]
 fn a_region_is_mirrored_in_the_plane_of_the_whole() {
     let folder = TempDir::new().unwrap();
-    let bone = bone(&folder);
+    let bone = bone(folder.path());
     let (_, solid) = region(&bone, &["--thickness=8"]);
     let out = folder.path().join("mirrored.stl");
     let part = bone.with_file_name("region.stl");
@@ -105,7 +92,7 @@ fn a_region_is_mirrored_in_the_plane_of_the_whole() {
 #[test]
 fn choices_that_cannot_go_together_are_unusable_arguments() {
     let folder = TempDir::new().unwrap();
-    let bone = bone(&folder);
+    let bone = bone(folder.path());
     let out = folder.path().join("none.stl");
     let fixed = [
         "roi",

@@ -91,6 +91,18 @@ pub enum RoiError {
         /// Its area.
         area_mm2: f64,
     },
+    /// The thickness is next to nothing beside the patch.
+    #[error(
+        "a thickness of {thickness_mm} mm cannot be cut under a patch of {area_mm2:.0} mm2, which takes {least_mm:.2} mm or more; select less or set a larger thickness"
+    )]
+    TooThin {
+        /// The thickness asked for.
+        thickness_mm: f64,
+        /// The patch's area.
+        area_mm2: f64,
+        /// The least thickness of such a patch.
+        least_mm: f64,
+    },
     /// The surface is open where it is to be cut.
     #[error(
         "the surface is open near the selection, so it has no inside to cut out; fill its holes first (bonemesh repair --fill-holes all)"

@@ -15,7 +15,7 @@
 //!
 //! ```no_run
 //! use bonemesh_mesh::{read_mesh, write_mesh};
-//! use bonemesh_roi::{SolidRequest, ThicknessMm, read_selection, select_solid};
+//! use bonemesh_roi::{SolidRequest, ThicknessMm, read_selection, select_solid, select_solids};
 //! use bonemesh_task::Task;
 //!
 //! let task = Task::default();
@@ -50,6 +50,6 @@ pub use local_thickness::{LocalThickness, local_thickness};
 pub use method::Method;
 pub use region::{Region, select_region};
 pub use selection::read_selection;
-pub use solid::{Solid, SolidRequest, select_solid};
+pub use solid::{Solid, SolidRequest, select_solid, select_solids};
 pub use symmetry::{Symmetry, symmetry_plane};
 pub use thickness::{ClearanceMm, ThicknessMm};

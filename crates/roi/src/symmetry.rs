@@ -74,7 +74,7 @@ pub fn symmetry_plane(mesh: &TriangleMesh, task: &Task) -> Result<Symmetry, RoiE
     };
     task.begin("symmetry plane", DIRECTIONS + FOLLOWED + ROUNDS[2]);
     let few = body(every(coarse));
-    let starts = directions().map(|normal| few.start(normal));
+    let starts = directions().map(Guess::across);
     let mut tried = follow_all(&few, starts.collect(), ROUNDS[0], task)?;
     tried.truncate(FOLLOWED);
     let some = body(every(medium));
@@ -99,6 +99,17 @@ struct Guess {
     error_mm2: f64,
 }
 
+impl Guess {
+    /// Through the middle, not looked at yet.
+    fn across(normal: Vector) -> Self {
+        Self {
+            normal,
+            offset_mm: 0.0,
+            error_mm2: f64::INFINITY,
+        }
+    }
+}
+
 /// A mirrored sample and the nearest place of the surface.
 struct Match {
     /// The sample before it was mirrored, from the middle.
@@ -117,15 +128,6 @@ struct Body<'a> {
 }
 
 impl Body<'_> {
-    fn start(&self, normal: Vector) -> Guess {
-        let _ = self;
-        Guess {
-            normal,
-            offset_mm: 0.0,
-            error_mm2: f64::INFINITY,
-        }
-    }
-
     /// The matches, nearest first.
     fn matches(&self, guess: &Guess) -> Vec<Match> {
         let found = self

@@ -6,16 +6,13 @@ use std::time::Instant;
 use bonemesh_cloud::{read_cloud, write_cloud};
 use bonemesh_mesh::{check_values_target, read_mesh, write_mesh, write_with_values};
 use bonemesh_phantom::write_phantom;
-use bonemesh_roi::read_selection;
 use bonemesh_task::{Task, pool};
 use serde_json::json;
 
 use super::arguments::{Check, CloudArguments, Command, Info, MeshArguments, Render};
 use super::output::Answer;
 use super::phantom::PhantomArguments;
-use super::roi::{Mirror, Roi};
-use super::{after_care, histogram, text};
-use crate::region::select_roi;
+use super::{after_care, histogram, region, text};
 use crate::render::{Rendered, mesh_cloud, point_cloud, render};
 use crate::source::{Reading, Source};
 use crate::thresholds::choose_threshold;
@@ -32,8 +29,8 @@ pub(super) fn run(command: &Command, task: &Task) -> Result<Answer, Error> {
         Command::Render(arguments) => run_render(arguments, task),
         Command::Cloud(arguments) => run_cloud(arguments, task),
         Command::Mesh(arguments) => run_mesh(arguments, task),
-        Command::Roi(arguments) => run_roi(arguments, task),
-        Command::Mirror(arguments) => run_mirror(arguments, task),
+        Command::Roi(arguments) => region::cut(arguments, task),
+        Command::Mirror(arguments) => region::mirror(arguments, task),
         Command::Check(arguments) => run_check(arguments, task),
         Command::Repair(arguments) => after_care::run(arguments, task),
         Command::Phantom(arguments) => run_phantom(arguments, task),
@@ -108,33 +105,6 @@ fn run_cloud(arguments: &CloudArguments, task: &Task) -> Result<Answer, Error> {
         "warnings": series.warnings,
     });
     Ok(Answer::new(&report, text))
-}
-
-fn run_roi(arguments: &Roi, task: &Task) -> Result<Answer, Error> {
-    bonemesh_mesh::check_target(&arguments.output)?;
-    let mesh = read_mesh(&arguments.mesh, task)?;
-    let selected = match (&arguments.selection.file, &arguments.selection.within) {
-        (_, Some(ball)) => ball.vertices(&mesh),
-        (Some(file), None) => read_selection(file)?,
-        (None, None) => Vec::new(),
-    };
-    let region = select_roi(&mesh, &selected, &arguments.request(), task)?;
-    write_mesh(&arguments.output, &region.mesh, task)?;
-    let text = text::region(&region.report, &arguments.output);
-    Ok(Answer::new(&region.report, text).with("output", arguments.output.to_string_lossy()))
-}
-
-fn run_mirror(arguments: &Mirror, task: &Task) -> Result<Answer, Error> {
-    bonemesh_mesh::check_target(&arguments.output)?;
-    let mesh = read_mesh(&arguments.mesh, task)?;
-    let whole = match &arguments.of {
-        Some(file) => &read_mesh(file, task)?,
-        None => &mesh,
-    };
-    let chosen = arguments.plane.choose(whole, arguments.threads, task)?;
-    write_mesh(&arguments.output, &mesh.mirrored(&chosen.plane), task)?;
-    let text = text::mirrored(&chosen.report, &arguments.output);
-    Ok(Answer::new(&chosen.report, text).with("output", arguments.output.to_string_lossy()))
 }
 
 fn run_check(arguments: &Check, task: &Task) -> Result<Answer, Error> {

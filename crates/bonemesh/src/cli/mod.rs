@@ -10,6 +10,7 @@ mod histogram;
 mod output;
 mod phantom;
 mod progress;
+mod region;
 mod roi;
 mod surface;
 mod text;

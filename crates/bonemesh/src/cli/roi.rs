@@ -43,6 +43,10 @@ pub(super) struct Roi {
     /// Take selected pieces, too, that lie hidden behind others.
     #[arg(long)]
     hidden: bool,
+    /// One solid for each piece of the selection that does not touch the others, the largest first:
+    /// OUTPUT-1.stl, OUTPUT-2.stl, ...
+    #[arg(long)]
+    pub(super) separate: bool,
     /// Take what lies on the other side of this plane in place of the selection: auto, the bone's own
     /// plane of symmetry; across the patient's x, y or z, through the middle of the mesh; the places p
     /// with N · p = D; or through three places X,Y,Z;X,Y,Z;X,Y,Z.

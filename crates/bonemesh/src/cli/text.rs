@@ -245,9 +245,9 @@ pub(super) fn region(report: &RegionReport, file: &Path) -> String {
     let what: String = found.chain(cut).collect();
     let notes: String = report.solid.iter().map(solid_notes).collect();
     format!(
-        "{}\n  {} selected vertices{what}, thickness {} mm\n{notes}  {} triangles, {} vertices, {}{}\n  {}\n  {:.2} s\n",
+        "{}\n  {}{what}, thickness {} mm\n{notes}  {} triangles, {} vertices, {}{}\n  {}\n  {:.2} s\n",
         file.display(),
-        report.selected(),
+        counted(report.selected(), "selected vertex", "selected vertices"),
         report.thickness_mm,
         report.triangles,
         report.vertices,
@@ -263,15 +263,24 @@ fn solid_notes(solid: &SolidReport) -> String {
     let counts = [
         (
             solid.dropped_pieces,
-            "pieces of the selection left out: crumbs, or hidden behind others",
+            ["piece", "pieces"],
+            "of the selection left out: crumbs, or hidden behind others",
         ),
-        (solid.closed_gaps, "gaps in the selection closed"),
-        (solid.filled_holes, "holes of the mesh filled first"),
+        (
+            solid.closed_gaps,
+            ["gap", "gaps"],
+            "in the selection closed",
+        ),
+        (
+            solid.filled_holes,
+            ["hole", "holes"],
+            "of the mesh filled first",
+        ),
     ];
-    let counts = counts.iter().filter(|(count, _)| *count > 0);
+    let counts = counts.iter().filter(|(count, _, _)| *count > 0);
     let mirror = solid.mirror.iter();
     let lines: Vec<String> = counts
-        .map(|(count, what)| format!("  {count} {what}\n"))
+        .map(|&(count, [one, many], what)| format!("  {} {what}\n", counted(count, one, many)))
         .chain(mirror.map(|m| format!("  taken from the other side of {}\n", plane(m))))
         .collect();
     lines.concat()

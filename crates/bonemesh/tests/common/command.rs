@@ -36,6 +36,19 @@ pub(crate) fn json(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
+/// The head's bone as a file of this folder.
+pub(crate) fn bone(folder: &Path) -> PathBuf {
+    let bone = folder.join("bone.stl");
+    json(&bonemesh(&[
+        "render",
+        text(&head()),
+        "-o",
+        text(&bone),
+        "--json",
+    ]));
+    bone
+}
+
 pub(crate) fn head() -> PathBuf {
     HEAD.path().join("head")
 }

@@ -10,6 +10,7 @@
 //! threads.
 
 mod bounds;
+mod cylinder;
 mod nearest;
 mod ray;
 
@@ -17,6 +18,7 @@ use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;
 
 pub(crate) use bounds::Bounds;
+use cylinder::Cylinder;
 pub use nearest::Nearest;
 pub(crate) use ray::{Ray, Start, first_hit};
 
@@ -42,6 +44,15 @@ pub struct TriangleTree<'a> {
     slots: Vec<Slot>,
     /// The root first; a left child follows its parent.
     nodes: Vec<Node>,
+    /// None unless they are asked for.
+    cylinders: Option<Cylinders>,
+}
+
+/// What lies closer around triangles than boxes.
+#[derive(Debug)]
+struct Cylinders {
+    of_slots: Vec<Cylinder>,
+    of_leaves: Vec<Cylinder>,
 }
 
 /// A triangle and its box.
@@ -86,7 +97,27 @@ impl<'a> TriangleTree<'a> {
             };
             root.grow(task)?;
         }
-        Ok(Self { mesh, slots, nodes })
+        Ok(Self {
+            mesh,
+            slots,
+            nodes,
+            cylinders: None,
+        })
+    }
+
+    /// The same tree, prepared so that [`TriangleTree::nearest`] is several times faster for places far from
+    /// the surface, for some 40 more bytes a triangle.
+    #[must_use]
+    pub fn for_far_places(mut self) -> Self {
+        let around = |slots: &[Slot]| {
+            let corners: Vec<Corners> = slots.iter().map(|s| self.corners_mm(s)).collect();
+            Cylinder::around(&corners)
+        };
+        self.cylinders = Some(Cylinders {
+            of_slots: self.slots.par_chunks(1).map(around).collect(),
+            of_leaves: self.slots.par_chunks(LEAF).map(around).collect(),
+        });
+        self
     }
 
     /// The mesh whose triangles these are.

@@ -1,6 +1,6 @@
 //! The nearest place on a surface.
 
-use super::{Bounds, Ray, Start, TriangleTree, first_hit};
+use super::{Bounds, LEAF, Node, Ray, Start, TriangleTree, first_hit};
 use crate::exact::Corners;
 use crate::vector::{Vector, dot, minus, plus_scaled};
 
@@ -37,8 +37,12 @@ impl TriangleTree<'_> {
             }
             let node = &nodes[number as usize];
             if node.right == 0 {
-                for slot in &self.slots()[node.first as usize..node.end as usize] {
-                    if squared_to_box(point_mm, &slot.bounds) > limit {
+                if self.leaf_is_farther(node, point_mm, limit) {
+                    continue;
+                }
+                for number in node.first as usize..node.end as usize {
+                    let slot = &self.slots()[number];
+                    if self.slot_is_farther(number, point_mm, limit) {
                         continue;
                     }
                     let corners = self.corners_mm(slot);
@@ -76,6 +80,21 @@ impl TriangleTree<'_> {
 }
 
 impl TriangleTree<'_> {
+    /// Whether all triangles of a leaf are surely farther from a place than the root of `limit` (mm2).
+    fn leaf_is_farther(&self, leaf: &Node, place: Vector, limit: f64) -> bool {
+        self.cylinders.as_ref().is_some_and(|cylinders| {
+            cylinders.of_leaves[leaf.first as usize / LEAF].squared_at_least(place) > limit
+        })
+    }
+
+    /// Whether the triangle of a slot is surely farther.
+    fn slot_is_farther(&self, number: usize, place: Vector, limit: f64) -> bool {
+        match &self.cylinders {
+            Some(cylinders) => cylinders.of_slots[number].squared_at_least(place) > limit,
+            None => squared_to_box(place, &self.slots[number].bounds) > limit,
+        }
+    }
+
     /// The first triangle that the ray from a place in a direction of length 1 meets before `within_mm`,
     /// and how far (mm) away.
     pub fn first_hit(
@@ -163,6 +182,8 @@ mod tests {
     fn the_nearest_place_is_as_near_as_trying_all_triangles_says() {
         let mesh = bumpy();
         let tree = TriangleTree::new(&mesh, &Task::default()).expect("nobody cancels");
+        let far = TriangleTree::new(&mesh, &Task::default()).expect("nobody cancels");
+        let far = far.for_far_places();
         for i in 0..2000 {
             let point = [7, 11, 13].map(|step| f64::from(i * step % 260) / 10.0 - 3.0);
             let all = mesh.triangles().iter();
@@ -177,6 +198,8 @@ mod tests {
             let within = least.sqrt();
             assert!(tree.nearest(point, within * 1.001 + 1e-9).is_some());
             assert_eq!(tree.nearest(point, within * 0.999), None);
+            assert_eq!(far.nearest(point, 100.0), Some(found));
+            assert_eq!(far.nearest(point, within * 0.999), None);
         }
     }
 

@@ -57,7 +57,9 @@ impl Ray {
 
     /// The length (mm) at which the ray enters a box, if that is before `end`.
     fn enters(&self, bounds: &Bounds, end: f64) -> Option<f64> {
-        let (mut first, mut last) = (0.0_f64, end);
+        // What grazes the border or lies at the end must not be lost by rounding.
+        const GRAZING: f64 = 1.0 + 1e-12;
+        let (mut first, mut last) = (0.0_f64, end * GRAZING);
         for axis in 0..3 {
             let [low, high] = [bounds.low[axis], bounds.high[axis]].map(f64::from);
             let origin = self.origin[axis];
@@ -69,8 +71,7 @@ impl Ray {
             }
             let [low, high] = [low, high].map(|border| (border - origin) * self.per_axis[axis]);
             first = first.max(low.min(high));
-            // What grazes the border must not be lost by rounding.
-            last = last.min(low.max(high) * (1.0 + 1e-12));
+            last = last.min(low.max(high) * GRAZING);
         }
         (first <= last).then_some(first)
     }

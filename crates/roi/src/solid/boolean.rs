@@ -53,7 +53,7 @@ pub(super) enum Source {
 }
 
 /// A body that others are cut out of.
-pub(super) struct Bone {
+pub(super) struct Stock {
     body: Manifold,
     /// Strictly: every edge with two triangles.
     is_manifold: bool,
@@ -61,7 +61,7 @@ pub(super) struct Bone {
     id: u32,
 }
 
-impl Bone {
+impl Stock {
     /// What is closed but touches itself goes by exact rational numbers, which take longer.
     ///
     /// # Errors

@@ -14,7 +14,7 @@ use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::vector::{Vector, minus, plus_scaled};
+use crate::vector::{Vector, cross, length, minus, plus_scaled};
 
 /// Triangles looked at between two looks at the cancel switch.
 const STRIDE: usize = 1 << 14;
@@ -49,6 +49,17 @@ impl Space {
         }
     }
 
+    /// What it has in common with another, at least a place of its own.
+    pub(super) fn common(&self, other: &Self) -> Self {
+        let clamped = |end: Vector| {
+            [0, 1, 2].map(|axis| end[axis].max(other.low[axis]).min(other.high[axis]))
+        };
+        Self {
+            low: clamped(self.low),
+            high: clamped(self.high),
+        }
+    }
+
     /// The axis along which it is the smallest part of a mesh.
     fn narrowest(&self, mesh: &TriangleMesh) -> usize {
         let Some([low, high]) = mesh.bounds_mm() else {
@@ -71,6 +82,14 @@ impl Space {
         slab
     }
 
+    pub(super) fn meets(&self, other: &Self) -> bool {
+        (0..3).all(|axis| self.low[axis] <= other.high[axis] && other.low[axis] <= self.high[axis])
+    }
+
+    pub(super) fn holds(&self, place: Vector) -> bool {
+        (0..3).all(|axis| (self.low[axis]..=self.high[axis]).contains(&place[axis]))
+    }
+
     pub(super) fn touches(&self, corners: [Vector; 3]) -> bool {
         (0..3).all(|axis| {
             corners.iter().any(|c| c[axis] >= self.low[axis])
@@ -80,6 +99,7 @@ impl Space {
 }
 
 /// A part of a mesh.
+#[derive(Clone)]
 pub(crate) struct Neighbourhood {
     pub(crate) vertices_mm: Vec<Vector>,
     pub(crate) triangles: Vec<[u32; 3]>,
@@ -104,15 +124,7 @@ impl Neighbourhood {
             })
             .collect::<Result<Vec<Vec<[u32; 3]>>, Cancelled>>()?
             .concat();
-        let mut numbers = FxHashMap::default();
-        let mut of_mesh = Vec::new();
-        let mut number = |vertex: u32| {
-            *numbers.entry(vertex).or_insert_with(|| {
-                of_mesh.push(vertex);
-                of_mesh.len() as u32 - 1
-            })
-        };
-        let triangles = near.iter().map(|t| t.map(&mut number)).collect();
+        let (triangles, of_mesh) = numbered(mesh.vertices_mm().len(), near);
         let place = |vertex: &u32| mesh.vertices_mm()[*vertex as usize];
         Ok(Self {
             vertices_mm: of_mesh.iter().map(place).collect(),
@@ -120,6 +132,62 @@ impl Neighbourhood {
             of_mesh,
         })
     }
+
+    /// Some of its triangles, in the order given, and the numbers that their vertices had.
+    pub(super) fn part(&self, triangles: impl Iterator<Item = u32>) -> (Self, Vec<u32>) {
+        let corners = triangles.map(|t| self.triangles[t as usize]);
+        let (triangles, members) = numbered(self.vertices_mm.len(), corners);
+        let each = || members.iter().map(|v| *v as usize);
+        let part = Self {
+            triangles,
+            vertices_mm: each().map(|v| self.vertices_mm[v]).collect(),
+            of_mesh: each().map(|v| self.of_mesh[v]).collect(),
+        };
+        (part, members)
+    }
+
+    /// The box of some of its triangles; `None` of no triangles.
+    pub(super) fn space(&self, triangles: impl Iterator<Item = u32>) -> Option<Space> {
+        let corners = triangles.flat_map(|t| self.triangles[t as usize]);
+        Space::of(corners.map(|v| self.vertices_mm[v as usize]))
+    }
+
+    /// Twice the area of a triangle in the direction that it faces.
+    pub(crate) fn facing(&self, triangle: [u32; 3]) -> Vector {
+        let [a, b, c] = triangle.map(|v| self.vertices_mm[v as usize]);
+        cross(minus(b, a), minus(c, a))
+    }
+
+    /// The area of the triangle of that number.
+    pub(super) fn area_mm2(&self, triangle: u32) -> f64 {
+        0.5 * length(self.facing(self.triangles[triangle as usize]))
+    }
+
+    /// The middle (mm) of the triangle of that number.
+    pub(super) fn middle(&self, triangle: u32) -> Vector {
+        let [a, b, c] = self.triangles[triangle as usize].map(|v| self.vertices_mm[v as usize]);
+        [0, 1, 2].map(|axis| (a[axis] + b[axis] + c[axis]) / 3.0)
+    }
+}
+
+/// Triangles with new numbers for their vertices, from 0 in the order in which they come, and the old number of
+/// each. `vertices`: how many there were.
+pub(super) fn numbered(
+    vertices: usize,
+    triangles: impl IntoIterator<Item = [u32; 3]>,
+) -> (Vec<[u32; 3]>, Vec<u32>) {
+    let mut numbers = vec![u32::MAX; vertices];
+    let mut members = Vec::new();
+    let mut number = |vertex: u32| {
+        let number = &mut numbers[vertex as usize];
+        if *number == u32::MAX {
+            *number = members.len() as u32;
+            members.push(vertex);
+        }
+        *number
+    };
+    let triangles = triangles.into_iter().map(|t| t.map(&mut number)).collect();
+    (triangles, members)
 }
 
 /// A part of a body, closed.
@@ -148,15 +216,7 @@ impl Part {
                 triangles = cut_off(&mut vertices_mm, &triangles, side);
             }
         }
-        let mut numbers = FxHashMap::default();
-        let mut used: Vec<u32> = Vec::new();
-        let mut number = |vertex: u32| {
-            *numbers.entry(vertex).or_insert_with(|| {
-                used.push(vertex);
-                used.len() as u32 - 1
-            })
-        };
-        let triangles = triangles.iter().map(|t| t.map(&mut number)).collect();
+        let (triangles, used) = numbered(vertices_mm.len(), triangles);
         Ok(Self {
             triangles,
             vertices_mm: used.iter().map(|v| vertices_mm[*v as usize]).collect(),

@@ -1,10 +1,10 @@
-//! The body that is cut out with, as a surface.
+//! What is cut out with, as surfaces.
 
-use bonemesh_mesh::TriangleMesh;
 use bonemesh_surface::level_surface;
 use bonemesh_task::Task;
 
 use super::below::Below;
+use super::boolean::Body;
 use super::lattice::Lattice;
 use super::straight::Straight;
 use crate::RoiError;
@@ -18,15 +18,20 @@ pub(super) enum Cutter<'a> {
 }
 
 impl Cutter<'_> {
-    /// Its surface, closed and outward-oriented.
+    /// The two bodies of which it is the common part: what is inside of its sides, and what is between its
+    /// lid and its bottom.
     ///
     /// # Errors
-    /// [`RoiError::NothingCut`] where it has no inside, or the work was cancelled.
-    pub(super) fn surface(&self, lattice: &Lattice, task: &Task) -> Result<TriangleMesh, RoiError> {
-        let values = match self {
-            Self::Below(below) => below.values(lattice, task),
-            Self::Straight(straight) => straight.values(lattice, task),
+    /// [`RoiError::NothingCut`] where one has no inside, or the work was cancelled.
+    pub(super) fn bodies(&self, lattice: &Lattice, task: &Task) -> Result<[Body; 2], RoiError> {
+        let fields = match self {
+            Self::Below(below) => below.fields(lattice, task),
+            Self::Straight(straight) => straight.fields(lattice, task),
         }?;
-        level_surface(&values, lattice.shape, &lattice.affine(), task)?.ok_or(RoiError::NothingCut)
+        let body = |values: &[f32]| {
+            let surface = level_surface(values, lattice.shape, &lattice.affine(), task)?;
+            surface.map(Body::of).ok_or(RoiError::NothingCut)
+        };
+        Ok([body(&fields.sides)?, body(&fields.between)?])
     }
 }

@@ -6,7 +6,7 @@
 
 use rustc_hash::FxHashMap;
 
-use super::crop::Neighbourhood;
+use super::patch::Patch;
 use crate::vector::{Vector, dot, plus_scaled, unit};
 
 /// Side (mm) of the cells over which it is looked what most of the patch faces; with their neighbours.
@@ -21,20 +21,13 @@ fn cell(place: Vector) -> Cell {
 }
 
 /// Takes the flaps out of a patch.
-pub(super) fn drop_flaps(near: &Neighbourhood, has_triangle: &mut [bool]) {
+pub(super) fn drop_flaps(patch: &mut Patch) {
+    let near = &patch.near;
+    let facing = |t: u32| near.facing(near.triangles[t as usize]);
     let mut facings: FxHashMap<Cell, Vector> = FxHashMap::default();
-    let own = |has: &[bool]| -> Vec<usize> { (0..has.len()).filter(|t| has[*t]).collect() };
-    let patch = own(has_triangle);
-    let middle = |t: usize| {
-        let corners = near.triangles[t].map(|v| near.vertices_mm[v as usize]);
-        let sum = corners
-            .iter()
-            .fold([0.0; 3], |sum, c| plus_scaled(sum, 1.0, *c));
-        sum.map(|v| v / 3.0)
-    };
-    for &t in &patch {
-        let sum = facings.entry(cell(middle(t))).or_default();
-        *sum = plus_scaled(*sum, 1.0, near.facing(near.triangles[t]));
+    for t in patch.own() {
+        let sum = facings.entry(cell(near.middle(t))).or_default();
+        *sum = plus_scaled(*sum, 1.0, facing(t));
     }
     let around: FxHashMap<Cell, Vector> = facings
         .keys()
@@ -48,35 +41,28 @@ pub(super) fn drop_flaps(near: &Neighbourhood, has_triangle: &mut [bool]) {
             )
         })
         .collect();
-    let mut is_apart = vec![false; has_triangle.len()];
-    for &t in &patch {
-        let facing = unit(near.facing(near.triangles[t]));
-        is_apart[t] = dot(facing, around[&cell(middle(t))]) < ALONG;
-    }
-    spread_from_border(near, has_triangle, &is_apart);
+    let is_apart = |t: &u32| dot(unit(facing(*t)), around[&cell(near.middle(*t))]) < ALONG;
+    let apart = patch.own().filter(is_apart).collect();
+    spread_from_border(patch, apart);
 }
 
 /// Takes out what is apart and hangs together, by vertices, with what is not of the patch.
-fn spread_from_border(near: &Neighbourhood, has_triangle: &mut [bool], is_apart: &[bool]) {
-    let mut is_border = vec![false; near.vertices_mm.len()];
-    for (triangle, _) in near
-        .triangles
-        .iter()
-        .zip(&*has_triangle)
-        .filter(|(_, has)| !**has)
-    {
+fn spread_from_border(patch: &mut Patch, mut apart: Vec<u32>) {
+    let triangles = &patch.near.triangles;
+    let mut is_border = vec![false; patch.near.vertices_mm.len()];
+    let others = triangles.iter().zip(&patch.has_triangle);
+    for (triangle, _) in others.filter(|(_, has)| !**has) {
         for vertex in triangle {
             is_border[*vertex as usize] = true;
         }
     }
-    let mut apart: Vec<usize> = (0..is_apart.len()).filter(|t| is_apart[*t]).collect();
     loop {
         let before = apart.len();
         apart.retain(|&t| {
-            let triangle = near.triangles[t];
+            let triangle = triangles[t as usize];
             let is_reached = triangle.iter().any(|v| is_border[*v as usize]);
             if is_reached {
-                has_triangle[t] = false;
+                patch.has_triangle[t as usize] = false;
                 for vertex in triangle {
                     is_border[vertex as usize] = true;
                 }

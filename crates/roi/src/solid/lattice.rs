@@ -11,7 +11,9 @@ const STEPS_MM: [f64; 2] = [0.8, 0.06];
 const IN_THICKNESS: f64 = 5.0;
 const IN_WIDTH: f64 = 12.0;
 /// Most nodes of a lattice.
-const MOST_NODES: f64 = 4e7;
+const MOST_NODES: f64 = 2e7;
+/// Steps along the side of a coarse cell; a power of two.
+pub(super) const COARSE: usize = 4;
 
 /// Steps from a box to the first node: as unlike one another as can be, so that what lies along the axes
 /// does not pass through nodes.
@@ -46,7 +48,7 @@ impl Frame {
     }
 }
 
-/// Nodes at equal steps along the directions of a frame.
+/// Nodes at equal steps along the directions of a frame, in whole coarse cells.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lattice {
     pub(super) frame: Frame,
@@ -74,7 +76,8 @@ impl Lattice {
     pub(super) fn around(frame: Frame, space: Space, step_mm: f64) -> Self {
         let nodes = |axis: usize| {
             let size = space.high[axis] - space.low[axis];
-            (size / step_mm).ceil() as usize + 3
+            let steps = (size / step_mm).ceil() as usize + 2;
+            steps.next_multiple_of(COARSE) + 1
         };
         Self {
             frame,
@@ -82,6 +85,23 @@ impl Lattice {
             step_mm,
             shape: [0, 1, 2].map(nodes),
         }
+    }
+
+    /// How many nodes there are.
+    pub(super) fn nodes(&self) -> usize {
+        self.shape.iter().product()
+    }
+
+    /// A node's number, along the first axis first.
+    pub(super) fn number(&self, [i, j, k]: [usize; 3]) -> usize {
+        (k * self.shape[1] + j) * self.shape[0] + i
+    }
+
+    /// The first node of each coarse cell.
+    pub(super) fn coarse_cells(&self) -> impl Iterator<Item = [usize; 3]> {
+        let [columns, rows, slices] = self.shape.map(|nodes| (nodes - 1) / COARSE);
+        let cell = move |c: usize| [c % columns, c / columns % rows, c / columns / rows];
+        (0..columns * rows * slices).map(move |c| cell(c).map(|place| place * COARSE))
     }
 
     pub(super) fn place(&self, node: [usize; 3]) -> Vector {

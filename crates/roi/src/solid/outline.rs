@@ -18,7 +18,7 @@ use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;
 
 use super::crop::Neighbourhood;
-use super::refine::Fine;
+use super::patch::Patch;
 use crate::vector::{Vector, dot, length, minus, plus_scaled, unit};
 
 /// Means over neighbours that blur the shares.
@@ -51,13 +51,13 @@ pub(super) struct Outline {
 
 impl Outline {
     /// Reaches so far outside of the outline.
-    pub(super) fn of(fine: &Fine, reach_mm: f64, task: &Task) -> Result<Self, Cancelled> {
-        let near = &fine.near;
+    pub(super) fn of(patch: &Patch, reach_mm: f64, task: &Task) -> Result<Self, Cancelled> {
+        let near = &patch.near;
         let neighbours = Neighbours::of(near);
-        let normals = normals(fine, &neighbours);
+        let normals = normals(patch, &neighbours);
         let neighbours = neighbours.kept(|a, b| dot(normals[a], normals[b]) > SAME_SIDE);
         task.check()?;
-        let sharp = sharp(fine, &neighbours);
+        let sharp = sharp(patch, &neighbours);
         let share = {
             let mut share = sharp.clone();
             for _ in 0..BLURS {
@@ -88,12 +88,12 @@ impl Outline {
 
 /// 1 at the corners of the patch's triangles and at selected vertices of the same side beside them, which are
 /// the tips of its teeth, else 0.
-fn sharp(fine: &Fine, neighbours: &Neighbours) -> Vec<f64> {
-    let Fine {
+fn sharp(patch: &Patch, neighbours: &Neighbours) -> Vec<f64> {
+    let Patch {
         near,
         has_triangle,
         is_selected,
-    } = fine;
+    } = patch;
     let mut share = vec![0.0; near.vertices_mm.len()];
     let triangles = near.triangles.iter().zip(has_triangle);
     for (triangle, _) in triangles.filter(|(_, has)| **has) {
@@ -191,12 +191,12 @@ fn smoothed(near: &Neighbourhood, neighbours: &Neighbours) -> Vec<Vector> {
 }
 
 /// Outward directions, weighted with areas and smoothed, on the patch and beside it on their own.
-fn normals(fine: &Fine, neighbours: &Neighbours) -> Vec<Vector> {
-    let near = &fine.near;
+fn normals(patch: &Patch, neighbours: &Neighbours) -> Vec<Vector> {
+    let near = &patch.near;
     let mut normals = vec![[0.0; 3]; near.vertices_mm.len()];
     let mut is_of_patch = vec![false; normals.len()];
     let mut add = |is_patch: bool| {
-        let triangles = near.triangles.iter().zip(&fine.has_triangle);
+        let triangles = near.triangles.iter().zip(&patch.has_triangle);
         for (triangle, _) in triangles.filter(|(_, has)| **has == is_patch) {
             let facing = near.facing(*triangle);
             for &vertex in triangle {

@@ -5,7 +5,8 @@
 
 use rustc_hash::FxHashMap;
 
-use super::crop::{Neighbourhood, Space};
+use super::crop::Space;
+use super::patch::Patch;
 use crate::vector::{Vector, length, minus, plus_scaled};
 
 /// Most triangles; beyond, what is left stays as large as it is.
@@ -13,53 +14,7 @@ const MOST: usize = 1_000_000;
 /// Most halvings of an edge: of 60 m to 1 mm.
 const ROUNDS: usize = 16;
 
-/// A neighbourhood, the patch on it and what is selected.
-pub(super) struct Fine {
-    pub(super) near: Neighbourhood,
-    /// By triangle.
-    pub(super) has_triangle: Vec<bool>,
-    /// By vertex.
-    pub(super) is_selected: Vec<bool>,
-}
-
-impl Fine {
-    /// The box of the patch.
-    pub(super) fn patch_space(&self) -> Option<Space> {
-        let triangles = self.near.triangles.iter().zip(&self.has_triangle);
-        let own = triangles.filter(|(_, has)| **has).flat_map(|(t, _)| *t);
-        Space::of(own.map(|v| self.near.vertices_mm[v as usize]))
-    }
-
-    /// What of it touches `space`: a lasso that sees through a head picks up much more than the patch that was
-    /// meant.
-    pub(super) fn restricted(&self, space: &Space) -> Self {
-        let mut numbers = vec![u32::MAX; self.near.vertices_mm.len()];
-        let mut members: Vec<usize> = Vec::new();
-        let mut number = |vertex: u32| {
-            let number = &mut numbers[vertex as usize];
-            if *number == u32::MAX {
-                *number = members.len() as u32;
-                members.push(vertex as usize);
-            }
-            *number
-        };
-        let places = &self.near.vertices_mm;
-        let all = self.near.triangles.iter().zip(&self.has_triangle);
-        let (triangles, has_triangle) = all
-            .filter(|(t, _)| space.touches(t.map(|v| places[v as usize])))
-            .map(|(t, has)| (t.map(&mut number), *has))
-            .unzip();
-        Self {
-            near: Neighbourhood {
-                vertices_mm: members.iter().map(|v| places[*v]).collect(),
-                triangles,
-                of_mesh: members.iter().map(|v| self.near.of_mesh[*v]).collect(),
-            },
-            has_triangle,
-            is_selected: members.iter().map(|v| self.is_selected[*v]).collect(),
-        }
-    }
-
+impl Patch {
     /// Halves the edges of triangles that touch `space` until none is longer than `longest_mm`.
     pub(super) fn refine(&mut self, space: &Space, longest_mm: f64) {
         for _ in 0..ROUNDS {
@@ -145,6 +100,7 @@ fn push_parts(
 
 #[cfg(test)]
 mod tests {
+    use super::super::crop::Neighbourhood;
     use super::*;
     use bonemesh_mesh::{TriangleMesh, check_topology};
     use bonemesh_task::Task;
@@ -158,7 +114,7 @@ mod tests {
             vertices_mm,
             triangles,
         };
-        let mut fine = Fine {
+        let mut fine = Patch {
             near,
             has_triangle: vec![true, false, false, false],
             is_selected: vec![true, true, true, false],

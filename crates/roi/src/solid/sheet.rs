@@ -7,7 +7,7 @@
 use bonemesh_mesh::{TriangleMesh, TriangleTree};
 use bonemesh_task::Task;
 
-use super::crop::Neighbourhood;
+use super::crop::{Neighbourhood, numbered};
 use super::outline::Outline;
 use crate::RoiError;
 use crate::vector::{Vector, cross, dot, length, minus, plus_scaled, unit};
@@ -35,8 +35,6 @@ pub(super) struct Seen {
     pub(super) inside_mm: f64,
     /// How deep (mm) is cut there.
     pub(super) bottom_mm: f64,
-    /// How far (mm) from the sheet.
-    pub(super) away_mm: f64,
 }
 
 impl Sheet {
@@ -47,25 +45,15 @@ impl Sheet {
         bottom_mm: f64,
     ) -> Result<Self, RoiError> {
         let is_reached = |v: &u32| !outline.inside_mm[*v as usize].is_nan();
-        let mut numbers = vec![u32::MAX; near.vertices_mm.len()];
-        let mut members = Vec::new();
-        let mut number = |vertex: u32| {
-            let number = &mut numbers[vertex as usize];
-            if *number == u32::MAX {
-                *number = members.len() as u32;
-                members.push(vertex as usize);
-            }
-            *number
-        };
         let reached = near.triangles.iter().filter(|t| t.iter().all(is_reached));
-        let triangles: Vec<[u32; 3]> = reached.map(|t| t.map(&mut number)).collect();
+        let (triangles, members) = numbered(near.vertices_mm.len(), reached.copied());
         let is_rim = rims(members.len(), &triangles);
-        let vertices = members.iter().map(|v| outline.smooth_mm[*v]).collect();
+        let members = || members.iter().map(|v| *v as usize);
         Ok(Self {
-            mesh: TriangleMesh::new(vertices, triangles)?,
-            inside_mm: members.iter().map(|v| outline.inside_mm[*v]).collect(),
-            normals: members.iter().map(|v| outline.normals[*v]).collect(),
-            bottom_mm: vec![bottom_mm; members.len()],
+            mesh: TriangleMesh::new(members().map(|v| outline.smooth_mm[v]).collect(), triangles)?,
+            inside_mm: members().map(|v| outline.inside_mm[v]).collect(),
+            normals: members().map(|v| outline.normals[v]).collect(),
+            bottom_mm: vec![bottom_mm; is_rim.len()],
             is_rim,
         })
     }
@@ -109,7 +97,7 @@ impl Sheet {
     pub(super) fn lookup<'a>(&'a self, task: &Task) -> Result<Lookup<'a>, RoiError> {
         Ok(Lookup {
             sheet: self,
-            tree: TriangleTree::new(&self.mesh, task)?,
+            tree: TriangleTree::new(&self.mesh, task)?.for_far_places(),
         })
     }
 }
@@ -149,7 +137,6 @@ impl Lookup<'_> {
             depth_mm: if above > 0.0 { -away_mm } else { away_mm },
             inside_mm: mean(&self.sheet.inside_mm) - beside_mm,
             bottom_mm: mean(&self.sheet.bottom_mm),
-            away_mm,
         })
     }
 }

@@ -6,6 +6,7 @@
 use bonemesh_task::Task;
 use rayon::prelude::*;
 
+use super::fields::Fields;
 use super::lattice::Lattice;
 use super::sheet::Sheet;
 use crate::RoiError;
@@ -31,26 +32,28 @@ struct Seen {
 }
 
 impl Straight<'_> {
-    /// How far (mm) each node is inside, below 0 outside.
-    pub(super) fn values(&self, lattice: &Lattice, task: &Task) -> Result<Vec<f32>, RoiError> {
-        let [columns, rows, slices] = lattice.shape;
+    pub(super) fn fields(&self, lattice: &Lattice, task: &Task) -> Result<Fields, RoiError> {
+        let slice = lattice.shape[0] * lattice.shape[1];
         let relief = self.relief(lattice);
-        task.begin("cutter", slices);
-        let mut values = vec![-1.0_f32; columns * rows * slices];
-        values
-            .par_chunks_mut(columns * rows)
+        task.begin("cutter", lattice.shape[2]);
+        let mut fields = Fields::outside(lattice.nodes());
+        fields
+            .sides
+            .par_chunks_mut(slice)
+            .zip(fields.between.par_chunks_mut(slice))
             .enumerate()
-            .try_for_each(|(k, values)| {
-                for (value, seen) in values.iter_mut().zip(&relief) {
+            .try_for_each(|(k, (sides, between))| {
+                let nodes = sides.iter_mut().zip(between).zip(&relief);
+                for ((side, between), seen) in nodes {
                     if let Some(seen) = seen {
                         let depth = (k as f64 - seen.height) * lattice.step_mm;
-                        let upright = (depth - self.top_mm).min(seen.bottom_mm - depth);
-                        *value = upright.min(seen.inside_mm) as f32;
+                        *side = seen.inside_mm as f32;
+                        *between = (depth - self.top_mm).min(seen.bottom_mm - depth) as f32;
                     }
                 }
                 task.advance(1)
             })?;
-        Ok(values)
+        Ok(fields)
     }
 
     /// What is seen on each line of nodes.

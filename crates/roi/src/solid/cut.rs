@@ -1,0 +1,185 @@
+//! The cut itself: from the patch, as places are looked up on it, to a sound solid.
+
+use bonemesh_mesh::{TriangleMesh, TriangleTree};
+use bonemesh_task::Task;
+use rustc_hash::FxHashSet;
+
+use super::below::Below;
+use super::boolean::{Body, Stock};
+use super::crop::{Part, Space};
+use super::cutter::Cutter;
+use super::far_side::end_at_far_side;
+use super::finish::{Finished, at_patch, finished};
+use super::lattice::{Frame, Lattice, affordable_mm};
+use super::sheet::Sheet;
+use super::straight::Straight;
+use super::{BESIDE_MM, BULGE};
+use crate::vector::{Vector, plus_scaled};
+use crate::{Direction, RoiError, SolidRequest};
+
+/// Places of the cutter that are tried.
+const TRIES: u32 = 12;
+/// How far (mm, and steps) beyond what is cut the bone is closed with lids: farther than the lattice goes.
+const LID_MM: f64 = 0.5;
+const LID_BEYOND_STEPS: f64 = 4.0;
+/// Steps that the lid lies above the patch, so that nothing of it lies in the bone's surface.
+const LID_STEPS: f64 = 2.5;
+/// How far (mm) the smoothed patch may lie outside of the bone, where a plate keeps its distance.
+const SMOOTHED_MM: f64 = 1.0;
+/// How far (mm) the cutter is moved from try to try, at most: less than a scan can tell.
+const MOVE_MM: f64 = 0.02;
+/// Parts of that by which it is moved along each axis: multiples of these never come back.
+const SHIFTS: [f64; 3] = [
+    0.618_033_988_749_895,
+    0.754_877_666_246_693,
+    0.819_172_513_396_164,
+];
+
+/// What is known before the bone is looked at.
+pub(super) struct Cut<'a> {
+    pub(super) request: &'a SolidRequest,
+    pub(super) step_mm: f64,
+    /// The patch's mean direction into the bone.
+    pub(super) inward: Vector,
+    pub(super) sheet: Sheet,
+}
+
+impl Cut<'_> {
+    /// The first sound solid of several lattices.
+    pub(super) fn sound(
+        mut self,
+        mesh: &TriangleMesh,
+        is_patch: &FxHashSet<[u32; 3]>,
+        task: &Task,
+    ) -> Result<TriangleMesh, RoiError> {
+        let straight = self.straight();
+        let frame = straight.map_or(Frame::PATIENT, Frame::along);
+        let space = self.space(mesh, frame).ok_or(RoiError::NothingCut)?;
+        self.step_mm = affordable_mm(&space, self.step_mm);
+        let around = self.space(mesh, Frame::PATIENT);
+        let around = around.ok_or(RoiError::NothingCut)?;
+        let is_plate = self.request.direction == Direction::Outward;
+        let beside_mm = LID_MM.max(LID_BEYOND_STEPS * self.step_mm);
+        let beside_mm = if is_plate {
+            BESIDE_MM.max(beside_mm)
+        } else {
+            beside_mm
+        };
+        let part = Part::of(mesh, &around.wider(beside_mm), task)?;
+        let is_front = part.is_of(is_patch);
+        let bone = TriangleMesh::new(part.vertices_mm, part.triangles)?;
+        if matches!(
+            self.request.direction,
+            Direction::Normal | Direction::Along(_)
+        ) {
+            let tree = TriangleTree::new(&bone, task)?;
+            let thickness_mm = self.request.thickness.mm();
+            end_at_far_side(&mut self.sheet, &tree, straight, thickness_mm, task)?;
+        }
+        let whole = is_plate.then(|| Sheet::whole(bone.clone()));
+        let lattice = Lattice::around(frame, space, self.step_mm);
+        let cutter = self.cutter(whole.as_ref(), task)?;
+        let [sides, between] = cutter.bodies(&lattice, task)?;
+        let (stock, cutter) = if is_plate {
+            (sides, between)
+        } else {
+            let (cutter, _) = Stock::of(&sides)?.common(&between, 0, task)?;
+            (Body::of(bone), cutter)
+        };
+        let stock = Stock::of(&stock)?;
+        for attempt in 0..TRIES {
+            let cut = stock.common(&cutter.moved(shift_mm(attempt)), attempt, task)?;
+            let cut = match self.request.direction {
+                Direction::Normal | Direction::Along(_) => at_patch(cut, &is_front),
+                // Behind hollows it does not hang together with the patch; of a plate all is meant.
+                Direction::Through | Direction::Outward => cut.0,
+            };
+            if let Finished::Sound(mesh) = finished(cut, task)? {
+                return Ok(mesh);
+            }
+        }
+        Err(RoiError::NoSound { tries: TRIES })
+    }
+
+    /// The one direction of a straight cut.
+    fn straight(&self) -> Option<Vector> {
+        match self.request.direction {
+            Direction::Through => Some(self.inward),
+            Direction::Along(direction) => Some(direction),
+            Direction::Normal | Direction::Outward => None,
+        }
+    }
+
+    fn lid_mm(&self) -> f64 {
+        LID_STEPS * self.step_mm
+    }
+
+    /// The box, in a frame, that all that is cut lies in.
+    fn space(&self, mesh: &TriangleMesh, frame: Frame) -> Option<Space> {
+        let thickness_mm = self.request.thickness.mm();
+        let [top_mm, bottom_mm] = match self.request.direction {
+            Direction::Outward => [thickness_mm + self.request.clearance.mm(), 0.0],
+            _ => [self.lid_mm(), thickness_mm],
+        };
+        let straight = self.straight();
+        // Along normals it bulges beyond what lies below the vertices.
+        let bulge_mm = if straight.is_some() {
+            0.0
+        } else {
+            BULGE * thickness_mm
+        };
+        let ends = self.sheet.around_patch().flat_map(|(place, normal)| {
+            let outward = straight.map_or(normal, |direction| direction.map(|v| -v));
+            [top_mm, -bottom_mm].map(|mm| frame.of(plus_scaled(place, mm, outward)))
+        });
+        let space = Space::of(ends)?.wider(bulge_mm);
+        let space = match self.request.direction {
+            Direction::Outward => space,
+            // Where there is no bone a thickness need not reach.
+            _ => space.common(&Space::of(corners(mesh)?.map(|c| frame.of(c)))?),
+        };
+        Some(space.wider(2.0 * self.step_mm))
+    }
+
+    /// `whole`: all of the bone near, for a plate that keeps off it.
+    fn cutter<'s>(&'s self, whole: Option<&'s Sheet>, task: &Task) -> Result<Cutter<'s>, RoiError> {
+        let thickness_mm = self.request.thickness.mm();
+        if self.straight().is_some() {
+            return Ok(Cutter::Straight(Straight {
+                sheet: &self.sheet,
+                top_mm: -self.lid_mm(),
+            }));
+        }
+        let sheet = self.sheet.lookup(task)?;
+        let Some(whole) = whole else {
+            return Ok(Cutter::Below(Below {
+                sheet,
+                top_mm: -self.lid_mm(),
+                bottom_mm: thickness_mm,
+                kept_off: None,
+            }));
+        };
+        let clearance_mm = self.request.clearance.mm();
+        Ok(Cutter::Below(Below {
+            sheet,
+            top_mm: -(clearance_mm + thickness_mm),
+            bottom_mm: SMOOTHED_MM,
+            kept_off: Some((whole.lookup(task)?, clearance_mm)),
+        }))
+    }
+}
+
+/// The corners of a mesh's box.
+fn corners(mesh: &TriangleMesh) -> Option<[Vector; 8]> {
+    let ends = mesh.bounds_mm()?;
+    let corner = |c: usize| [ends[c & 1][0], ends[c >> 1 & 1][1], ends[c >> 2][2]];
+    Some([0, 1, 2, 3, 4, 5, 6, 7].map(corner))
+}
+
+/// How far (mm) the cutter is moved for a try; not at all for the first.
+fn shift_mm(attempt: u32) -> [f64; 3] {
+    SHIFTS.map(|part| {
+        let turn = (f64::from(attempt) * part).fract();
+        MOVE_MM * if turn > 0.5 { turn - 1.0 } else { turn }
+    })
+}
