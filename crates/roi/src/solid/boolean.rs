@@ -8,6 +8,7 @@ use bonemesh_task::{Cancelled, Task};
 use manifold_rust::cancel::CancelToken;
 use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{BooleanEngine, Error, MeshGL64, OpType};
+use rayon::ThreadPoolBuilder;
 
 use crate::RoiError;
 use crate::vector::{Vector, plus_scaled};
@@ -65,17 +66,21 @@ impl Stock {
     /// What is closed but touches itself goes by exact rational numbers, which take longer.
     ///
     /// # Errors
-    /// [`RoiError::Open`] for a body that is not closed, or [`RoiError::Cut`].
-    pub(super) fn of(body: &Body) -> Result<Self, RoiError> {
+    /// [`RoiError::Open`] for a body that is not closed, [`RoiError::Cut`], or the work was cancelled.
+    pub(super) fn of(body: Body, task: &Task) -> Result<Self, RoiError> {
         let id = Manifold::reserve_ids(1);
-        let mesh = exported(body, id, TOLERANCES_MM[0]);
-        let strict = Manifold::from_mesh_gl64(&mesh);
-        let is_manifold = strict.status() != Error::NotManifold;
-        let body = if is_manifold {
-            strict
-        } else {
-            Manifold::from_mesh_gl64_robust(&mesh)
-        };
+        let made = unless_cancelled(task, move || {
+            let mesh = exported(&body, id, TOLERANCES_MM[0]);
+            let strict = Manifold::from_mesh_gl64(&mesh);
+            let is_manifold = strict.status() != Error::NotManifold;
+            let body = if is_manifold {
+                strict
+            } else {
+                Manifold::from_mesh_gl64_robust(&mesh)
+            };
+            (body, is_manifold)
+        })?;
+        let (body, is_manifold) = made.ok_or(RoiError::Cut("the surface was not understood"))?;
         match body.status() {
             Error::NoError => Ok(Self {
                 body,
@@ -125,7 +130,33 @@ impl Stock {
     }
 }
 
-/// Does the work and watches the cancel switch meanwhile.
+/// Does work that cannot be stopped, on threads of its own, which are left alone with it when it is cancelled.
+/// They may not be those that wait here: all of these might wait at once. `None` if it panicked.
+fn unless_cancelled<R: Send + 'static>(
+    task: &Task,
+    work: impl FnOnce() -> R + Send + 'static,
+) -> Result<Option<R>, Cancelled> {
+    let threads = ThreadPoolBuilder::new()
+        .num_threads(rayon::current_num_threads())
+        .panic_handler(|_| ());
+    let Ok(threads) = threads.build() else {
+        return Ok(None);
+    };
+    let (done, is_done) = channel();
+    threads.spawn(move || {
+        // Nobody waits for it any more where this fails.
+        let _ = done.send(work());
+    });
+    loop {
+        match is_done.recv_timeout(LOOK_EVERY) {
+            Ok(result) => return Ok(Some(result)),
+            Err(RecvTimeoutError::Timeout) => task.check()?,
+            Err(RecvTimeoutError::Disconnected) => return Ok(None),
+        }
+    }
+}
+
+/// Does work that can be stopped, and watches the cancel switch meanwhile.
 fn until_cancelled<R>(task: &Task, work: impl FnOnce(&CancelToken) -> R) -> Result<R, Cancelled> {
     let token = &CancelToken::new();
     let (done, is_done) = channel::<()>();

@@ -23,7 +23,7 @@ const TRIES: u32 = 12;
 const LID_MM: f64 = 0.5;
 const LID_BEYOND_STEPS: f64 = 4.0;
 /// Steps that the lid lies above the patch, so that nothing of it lies in the bone's surface.
-const LID_STEPS: f64 = 2.5;
+const LID_STEPS: f64 = 1.5;
 /// How far (mm) the smoothed patch may lie outside of the bone, where a plate keeps its distance.
 const SMOOTHED_MM: f64 = 1.0;
 /// How far (mm) the cutter is moved from try to try, at most: less than a scan can tell.
@@ -45,60 +45,78 @@ pub(super) struct Cut<'a> {
 }
 
 impl Cut<'_> {
-    /// The first sound solid of several lattices.
+    /// The first sound solid of several places of the cutter.
     pub(super) fn sound(
         mut self,
         mesh: &TriangleMesh,
         is_patch: &FxHashSet<[u32; 3]>,
         task: &Task,
     ) -> Result<TriangleMesh, RoiError> {
-        let straight = self.straight();
-        let frame = straight.map_or(Frame::PATIENT, Frame::along);
+        let direction = self.request.direction;
+        let frame = self.straight().map_or(Frame::PATIENT, Frame::along);
         let space = self.space(mesh, frame).ok_or(RoiError::NothingCut)?;
         self.step_mm = affordable_mm(&space, self.step_mm);
         let around = self.space(mesh, Frame::PATIENT);
         let around = around.ok_or(RoiError::NothingCut)?;
-        let is_plate = self.request.direction == Direction::Outward;
-        let beside_mm = LID_MM.max(LID_BEYOND_STEPS * self.step_mm);
-        let beside_mm = if is_plate {
-            BESIDE_MM.max(beside_mm)
-        } else {
-            beside_mm
-        };
-        let part = Part::of(mesh, &around.wider(beside_mm), task)?;
+        let part = Part::of(mesh, &around.wider(self.beside_mm()), task)?;
         let is_front = part.is_of(is_patch);
         let bone = TriangleMesh::new(part.vertices_mm, part.triangles)?;
-        if matches!(
-            self.request.direction,
-            Direction::Normal | Direction::Along(_)
-        ) {
-            let tree = TriangleTree::new(&bone, task)?;
-            let thickness_mm = self.request.thickness.mm();
-            end_at_far_side(&mut self.sheet, &tree, straight, thickness_mm, task)?;
-        }
-        let whole = is_plate.then(|| Sheet::whole(bone.clone()));
         let lattice = Lattice::around(frame, space, self.step_mm);
-        let cutter = self.cutter(whole.as_ref(), task)?;
-        let [sides, between] = cutter.bodies(&lattice, task)?;
-        let (stock, cutter) = if is_plate {
-            (sides, between)
+        let (stock, cutter) = if direction == Direction::Outward {
+            let [sides, between] = self.bodies(&bone, &lattice, task)?;
+            (Stock::of(sides, task)?, between)
         } else {
-            let (cutter, _) = Stock::of(&sides)?.common(&between, 0, task)?;
-            (Body::of(bone), cutter)
+            let body = Body::of(bone.clone());
+            // The first has hardly work for more than one thread.
+            let (stock, cutter) = rayon::join(
+                || Stock::of(body, task),
+                || -> Result<Body, RoiError> {
+                    let [sides, between] = self.bodies(&bone, &lattice, task)?;
+                    Ok(Stock::of(sides, task)?.common(&between, 0, task)?.0)
+                },
+            );
+            (stock?, cutter?)
         };
-        let stock = Stock::of(&stock)?;
         for attempt in 0..TRIES {
             let cut = stock.common(&cutter.moved(shift_mm(attempt)), attempt, task)?;
-            let cut = match self.request.direction {
+            let cut = match direction {
                 Direction::Normal | Direction::Along(_) => at_patch(cut, &is_front),
                 // Behind hollows it does not hang together with the patch; of a plate all is meant.
                 Direction::Through | Direction::Outward => cut.0,
             };
-            if let Finished::Sound(mesh) = finished(cut, task)? {
+            if let Finished::Sound(mesh) = finished(cut, bone.vertices_mm(), task)? {
                 return Ok(mesh);
             }
         }
         Err(RoiError::NoSound { tries: TRIES })
+    }
+
+    /// The two bodies of which the cutter is the common part. `bone`: all of it near.
+    fn bodies(
+        &mut self,
+        bone: &TriangleMesh,
+        lattice: &Lattice,
+        task: &Task,
+    ) -> Result<[Body; 2], RoiError> {
+        let (straight, thickness_mm) = (self.straight(), self.request.thickness.mm());
+        if let Direction::Normal | Direction::Along(_) = self.request.direction {
+            let tree = TriangleTree::new(bone, task)?;
+            end_at_far_side(&mut self.sheet, &tree, straight, thickness_mm, task)?;
+        }
+        let is_plate = self.request.direction == Direction::Outward;
+        let whole = is_plate.then(|| Sheet::whole(bone.clone()));
+        let cutter = self.cutter(whole.as_ref(), task)?;
+        cutter.bodies(lattice, task)
+    }
+
+    /// How far (mm) beyond what is cut the bone is closed with lids.
+    fn beside_mm(&self) -> f64 {
+        let beside_mm = LID_MM.max(LID_BEYOND_STEPS * self.step_mm);
+        if self.request.direction == Direction::Outward {
+            BESIDE_MM.max(beside_mm)
+        } else {
+            beside_mm
+        }
     }
 
     /// The one direction of a straight cut.
@@ -152,20 +170,20 @@ impl Cut<'_> {
         }
         let sheet = self.sheet.lookup(task)?;
         let Some(whole) = whole else {
-            return Ok(Cutter::Below(Below {
+            return Ok(Cutter::Below(Box::new(Below {
                 sheet,
                 top_mm: -self.lid_mm(),
                 bottom_mm: thickness_mm,
                 kept_off: None,
-            }));
+            })));
         };
         let clearance_mm = self.request.clearance.mm();
-        Ok(Cutter::Below(Below {
+        Ok(Cutter::Below(Box::new(Below {
             sheet,
             top_mm: -(clearance_mm + thickness_mm),
             bottom_mm: SMOOTHED_MM,
             kept_off: Some((whole.lookup(task)?, clearance_mm)),
-        }))
+        })))
     }
 }
 

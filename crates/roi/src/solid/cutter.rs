@@ -12,7 +12,7 @@ use crate::RoiError;
 /// How places belong to the patch.
 pub(super) enum Cutter<'a> {
     /// By the nearest place of it.
-    Below(Below<'a>),
+    Below(Box<Below<'a>>),
     /// Straight along one direction.
     Straight(Straight<'a>),
 }

@@ -4,7 +4,14 @@ use bonemesh_mesh::{Sets, TriangleMesh, TriangleTree, check_topology, find_inter
 use bonemesh_task::Task;
 
 use super::boolean::{Body, Source};
+use super::mend::{Places, mended};
 use crate::RoiError;
+use crate::vector::Vector;
+
+/// Rounds of mending.
+const MENDS: usize = 6;
+/// Pairs of triangles that meet, beyond which it is no matter of a few slivers.
+const MOST_MET: usize = 1000;
 
 /// What became of a cut.
 pub(super) enum Finished {
@@ -39,26 +46,36 @@ pub(super) fn at_patch((cut, sources): (Body, Vec<Source>), is_front: &[bool]) -
     }
 }
 
-/// Rounds to what a file holds, and checks that.
+/// Rounds to what a file holds, checks that, and mends where triangles meet.
+///
+/// `own_mm`: the bone's vertices, which stay where they are.
 ///
 /// # Errors
 /// [`RoiError::NothingCut`] where there is nothing, or the work was cancelled.
-pub(super) fn finished(cut: Body, task: &Task) -> Result<Finished, RoiError> {
+pub(super) fn finished(cut: Body, own_mm: &[Vector], task: &Task) -> Result<Finished, RoiError> {
     if cut.triangles.is_empty() {
         return Err(RoiError::NothingCut);
     }
     let mesh = TriangleMesh::new(cut.vertices_mm, cut.triangles)?.compacted();
-    let written = mesh.as_written(task)?;
-    let topology = check_topology(&written, task)?;
-    let is_closed = topology.watertight && topology.manifold && topology.degenerate_triangles == 0;
-    if !is_closed || topology.volume_mm3 <= 0.0 {
-        return Ok(Finished::Meets);
+    let mut written = mesh.as_written(task)?;
+    let mut own = None;
+    for _ in 0..MENDS {
+        let topology = check_topology(&written, task)?;
+        let is_closed =
+            topology.watertight && topology.manifold && topology.degenerate_triangles == 0;
+        if !is_closed || topology.volume_mm3 <= 0.0 {
+            break;
+        }
+        let tree = TriangleTree::new(&written, task)?;
+        let found = find_intersections(&tree, MOST_MET, task)?;
+        if found.count == 0 {
+            return Ok(Finished::Sound(written));
+        }
+        let own = own.get_or_insert_with(|| Places::of(own_mm));
+        match mended(&written, &found.pairs, own) {
+            Some(mesh) if found.count < MOST_MET => written = mesh,
+            _ => break,
+        }
     }
-    let tree = TriangleTree::new(&written, task)?;
-    let found = find_intersections(&tree, 1, task)?;
-    Ok(if found.count == 0 {
-        Finished::Sound(written)
-    } else {
-        Finished::Meets
-    })
+    Ok(Finished::Meets)
 }

@@ -6,9 +6,9 @@ use super::crop::Space;
 use crate::vector::{Vector, cross, dot, plus_scaled, unit};
 
 /// Largest and smallest step between nodes (mm).
-const STEPS_MM: [f64; 2] = [0.8, 0.06];
+const STEPS_MM: [f64; 2] = [1.2, 0.06];
 /// At least so many steps in the thickness, and in the patch's width.
-const IN_THICKNESS: f64 = 5.0;
+const IN_THICKNESS: f64 = 4.0;
 const IN_WIDTH: f64 = 12.0;
 /// Most nodes of a lattice.
 const MOST_NODES: f64 = 2e7;

@@ -20,6 +20,7 @@ mod fields;
 mod finish;
 mod flaps;
 mod lattice;
+mod mend;
 mod outline;
 mod patch;
 mod pieces;
