@@ -81,6 +81,13 @@ class RegionInputs:
             )
         return cls(directory / f"{name}.stl", name, thickness_mm)
 
+    def outputs(self, regions: int) -> list[Path]:
+        """The files of so many regions: numbered where there are several."""
+        if regions == 1:
+            return [self.output]
+        numbers = range(1, regions + 1)
+        return [self.output.with_stem(f"{self.name}-{number}") for number in numbers]
+
 
 def region_options(
     properties: Any, view: tuple[float, float, float] | None
@@ -88,7 +95,11 @@ def region_options(
     """The keyword arguments of bonemesh.select_roi; `view`: where the user looks, in the patient."""
     if properties.method == "thesis":
         return {"method": "thesis"}
-    options = {"method": "solid", "hidden": properties.hidden}
+    options = {
+        "method": "solid",
+        "hidden": properties.hidden,
+        "separate": properties.separate,
+    }
     options["direction"] = properties.direction
     if properties.direction == "outward":
         options["clearance_mm"] = as_typed(properties.clearance)
@@ -98,6 +109,8 @@ def region_options(
                 "there is no 3D view to look along; choose another direction, or press the button in the view's sidebar"
             )
         options["direction"] = view
+    if properties.direction == "given":
+        options["direction"] = tuple(properties.direction_numbers)
     return options
 
 

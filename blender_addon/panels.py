@@ -16,6 +16,7 @@ from .operators.measure_thickness import BONEMESH_OT_measure_thickness
 from .operators.mirror_roi import BONEMESH_OT_mirror_roi
 from .operators.plane_from_vertices import BONEMESH_OT_plane_from_vertices
 from .operators.render_surface_mesh import BONEMESH_OT_render_surface_mesh
+from .operators.resume_roi import BONEMESH_OT_resume_roi
 from .operators.select_roi import BONEMESH_OT_select_roi
 
 
@@ -69,10 +70,9 @@ def draw_progress(layout: UILayout, running: job.Job) -> None:
     column.operator(BONEMESH_OT_cancel.bl_idname, icon="X")
 
 
-class BONEMESH_PT_region(Panel):
-    """How the region is cut, and its counterpart on the other side."""
+class Part:
+    """Mixed into the parts below the panel, which are folded in at first."""
 
-    bl_label = "Region"
     bl_parent_id = "BONEMESH_PT_segment_ct"
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
@@ -80,11 +80,25 @@ class BONEMESH_PT_region(Panel):
     bl_options: ClassVar[set[str]] = {"DEFAULT_CLOSED"}
 
     def draw(self, context: Context) -> None:
-        """Draws thickness, cut and mirror."""
-        properties = context.scene.bonemesh_region
+        """Draws the part's fields with their names before them."""
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
+        self.draw_fields(context, layout)
+
+    def draw_fields(self, context: Context, layout: UILayout) -> None:
+        """Draws the fields."""
+        raise NotImplementedError
+
+
+class BONEMESH_PT_region(Part, Panel):
+    """How the region is cut, and its counterpart on the other side."""
+
+    bl_label = "Region"
+
+    def draw_fields(self, context: Context, layout: UILayout) -> None:
+        """Draws thickness, cut and mirror."""
+        properties = context.scene.bonemesh_region
         column = layout.column()
         column.operator(BONEMESH_OT_measure_thickness.bl_idname)
         if properties.measured:
@@ -96,7 +110,11 @@ class BONEMESH_PT_region(Panel):
         cut.prop(properties, "direction")
         if properties.direction == "outward":
             cut.prop(properties, "clearance")
+        if properties.direction == "given":
+            cut.prop(properties, "direction_numbers")
         cut.prop(properties, "hidden")
+        cut.prop(properties, "separate")
+        column.operator(BONEMESH_OT_resume_roi.bl_idname)
         column = layout.column()
         column.active = properties.method == "solid"
         column.prop(properties, "plane")
@@ -107,22 +125,14 @@ class BONEMESH_PT_region(Panel):
         column.operator(BONEMESH_OT_mirror_roi.bl_idname)
 
 
-class BONEMESH_PT_after_care(Panel):
+class BONEMESH_PT_after_care(Part, Panel):
     """What is done to the mesh after it was made; little unless asked for."""
 
     bl_label = "After-Care"
-    bl_parent_id = "BONEMESH_PT_segment_ct"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Segment CT"
-    bl_options: ClassVar[set[str]] = {"DEFAULT_CLOSED"}
 
-    def draw(self, context: Context) -> None:
+    def draw_fields(self, context: Context, layout: UILayout) -> None:
         """Draws the steps in the order in which they are done."""
         properties = context.scene.bonemesh
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
         column = layout.column()
         column.prop(properties, "fill_holes")
         if properties.fill_holes == "small":
@@ -141,22 +151,14 @@ class BONEMESH_PT_after_care(Panel):
             column.prop(properties, "decimate_mm")
 
 
-class BONEMESH_PT_advanced(Panel):
+class BONEMESH_PT_advanced(Part, Panel):
     """What is right as it stands for most images."""
 
     bl_label = "Advanced"
-    bl_parent_id = "BONEMESH_PT_segment_ct"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Segment CT"
-    bl_options: ClassVar[set[str]] = {"DEFAULT_CLOSED"}
 
-    def draw(self, context: Context) -> None:
+    def draw_fields(self, context: Context, layout: UILayout) -> None:
         """Draws the settings of the next rendering."""
         properties = context.scene.bonemesh
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
         column = layout.column()
         column.prop(properties, "series")
         column.prop(properties, "one_series")

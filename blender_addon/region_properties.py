@@ -45,6 +45,11 @@ DIRECTIONS = [
         "Plate on the Bone",
         "Away from the bone: the plate that lies on it there, for implants and drill guides",
     ),
+    (
+        "given",
+        "Along a Direction",
+        "Straight along a direction of the patient, such as that of an earlier region, to the far side of the bone",
+    ),
 ]
 PLANES = [
     ("auto", "Found", "The mesh's own plane of symmetry, found"),
@@ -64,6 +69,13 @@ class BonemeshRegionProperties(PropertyGroup):
     direction: EnumProperty(
         name="Direction", description="Which way the region is cut", items=DIRECTIONS
     )
+    direction_numbers: FloatVectorProperty(
+        name="Along",
+        description="The direction in the patient: to the left, to the back, to the head",
+        size=3,
+        default=(0.0, 1.0, 0.0),
+        precision=4,
+    )
     clearance: FloatProperty(
         name="Clearance (mm)",
         description="The gap between the bone and a plate on it",
@@ -75,6 +87,11 @@ class BonemeshRegionProperties(PropertyGroup):
     hidden: BoolProperty(
         name="Take Hidden Pieces",
         description="Selected pieces that lie behind others count, too, such as those that a lasso with X-ray picked up on the far side",
+        default=False,
+    )
+    separate: BoolProperty(
+        name="One for Each Piece",
+        description="A region of its own for each piece of the selection that does not touch the others; else they are one",
         default=False,
     )
     plane: EnumProperty(

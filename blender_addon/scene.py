@@ -12,6 +12,7 @@ from mathutils import Matrix, Vector
 from numpy.typing import NDArray
 
 from .findings import of_rendering
+from .inputs import RefusalError
 from .selection import CENTRE_MM, PATIENT_MM, Source, relative_to
 
 if TYPE_CHECKING:
@@ -29,6 +30,16 @@ CHECK = "check"
 STATE = "state"
 
 REGIONS = "Regions of Interest"
+SOURCE = "bonemesh_source"
+# How a region is cut, by the library's names.
+REGION_OPTIONS = (
+    "direction",
+    "clearance_mm",
+    "hidden",
+    "separate",
+    "mirror",
+    "mirror_back",
+)
 BONE_COLOUR = (0.86, 0.80, 0.68, 1.0)
 REGION_COLOUR = (0.85, 0.25, 0.10, 1.0)
 
@@ -86,11 +97,55 @@ def add_region(
     keep(placed, "version", region.report["version"])
     keep(placed, "method", region.report["method"])
     keep(placed, "thickness_mm", region.report["thickness_mm"])
-    keep(placed, "source", source.name)
+    placed[SOURCE] = source.name
     keep(placed, "selected", [int(vertex) for vertex in source.selected])
-    for key in ("direction", "clearance_mm", "hidden", "mirror", "mirror_back"):
+    for key in REGION_OPTIONS:
         keep(placed, key, options.get(key))
     return placed
+
+
+def source_of(region: Any) -> Any:
+    """The object that a region was cut from, if its vertices can still be those that were selected."""
+    name = region[SOURCE]
+    source = bpy.data.objects.get(name)
+    if source is None or source.type != "MESH":
+        raise RefusalError(
+            f'"{name}", which this region was cut from, is gone; undo its removal or its new name'
+        )
+    if max(region.get("bonemesh_selected", ()), default=0) >= len(source.data.vertices):
+        raise RefusalError(
+            f'"{name}", which this region was cut from, has fewer vertices now; select on it anew'
+        )
+    return source
+
+
+def kept_settings(region: Any) -> dict[str, Any]:
+    """What a region was cut with, by the names that the library has for it."""
+    keys = ("selected", "thickness_mm", "method", *REGION_OPTIONS)
+    kept = {key: region.get(f"bonemesh_{key}") for key in keys}
+    plain = {
+        key: value.to_list() if hasattr(value, "to_list") else value
+        for key, value in kept.items()
+    }
+    return {key: value for key, value in plain.items() if value is not None}
+
+
+def select_vertices(context: Any, placed: Any, vertices: list[int]) -> None:
+    """These vertices of an object that is not in Edit Mode, and what lies between them alone."""
+    data = placed.data
+    is_selected = np.zeros(len(data.vertices), dtype=bool)
+    is_selected[vertices] = True
+    ends = np.empty(2 * len(data.edges), dtype=np.int32)
+    data.edges.foreach_get("vertices", ends)
+    corners = np.empty(len(data.loops), dtype=np.int32)
+    data.loops.foreach_get("vertex_index", corners)
+    starts = np.empty(len(data.polygons), dtype=np.int32)
+    data.polygons.foreach_get("loop_start", starts)
+    faces = np.logical_and.reduceat(is_selected[corners], starts) if len(starts) else []
+    data.vertices.foreach_set("select", is_selected)
+    data.edges.foreach_set("select", is_selected[ends].reshape(-1, 2).all(axis=1))
+    data.polygons.foreach_set("select", faces)
+    context.tool_settings.mesh_select_mode = (True, False, False)
 
 
 def regions(context: Any) -> Any:

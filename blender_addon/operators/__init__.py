@@ -16,6 +16,7 @@ from .measure_thickness import BONEMESH_OT_measure_thickness
 from .mirror_roi import BONEMESH_OT_mirror_roi
 from .plane_from_vertices import BONEMESH_OT_plane_from_vertices
 from .render_surface_mesh import BONEMESH_OT_render_surface_mesh
+from .resume_roi import BONEMESH_OT_resume_roi
 from .scan_ct_directory import BONEMESH_OT_scan_ct_directory
 from .select_roi import BONEMESH_OT_select_roi
 from .stop_scan import BONEMESH_OT_stop_scan
@@ -29,6 +30,7 @@ CLASSES = (
     BONEMESH_OT_render_surface_mesh,
     BONEMESH_OT_select_roi,
     BONEMESH_OT_mirror_roi,
+    BONEMESH_OT_resume_roi,
     BONEMESH_OT_plane_from_vertices,
     BONEMESH_OT_measure_thickness,
     BONEMESH_OT_check_mesh,

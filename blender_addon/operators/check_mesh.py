@@ -9,23 +9,16 @@ from bpy.types import Context, Operator
 from .. import findings, scene, selection
 from ..job import Job
 from .background import BackgroundOperator
+from .on_mesh import OnMesh
 
 
-class BONEMESH_OT_check_mesh(BackgroundOperator, Operator):
+class BONEMESH_OT_check_mesh(OnMesh, BackgroundOperator, Operator):
     """Find out whether the active mesh can be printed as it stands and, if not, why; it is not changed"""
 
     bl_idname = "bonemesh.check_mesh"
     bl_label = "Check Mesh"
     bl_options: ClassVar[set[str]] = {"UNDO"}
-
-    @classmethod
-    def poll(cls, context: Context) -> bool:
-        """Needs a mesh."""
-        active = context.active_object
-        if active is None or active.type != "MESH":
-            cls.poll_message_set("Make the mesh object that is to be checked active")
-            return False
-        return True
+    remedy = "Make the mesh object that is to be checked active"
 
     def prepare(self, context: Context) -> Job[dict[str, Any]]:
         """Copies the active object's mesh as a file of it would be."""

@@ -9,20 +9,15 @@ from bpy.types import Context, Operator
 from .. import selection
 from ..job import Job
 from .background import BackgroundOperator
+from .on_mesh import OnMesh
 
 
-class BONEMESH_OT_measure_thickness(BackgroundOperator, Operator):
+class BONEMESH_OT_measure_thickness(OnMesh, BackgroundOperator, Operator):
     """Measure how thick the bone is under the selected vertices; nothing is changed"""
 
     bl_idname = "bonemesh.measure_thickness"
     bl_label = "Measure Thickness Here"
     bl_options: ClassVar[set[str]] = {"UNDO"}
-
-    @classmethod
-    def poll(cls, context: Context) -> bool:
-        """Needs a mesh to select on."""
-        active = context.active_object
-        return active is not None and active.type == "MESH"
 
     def prepare(self, context: Context) -> Job[dict[str, float] | None]:
         """Copies the active object's mesh and selection."""

@@ -9,23 +9,18 @@ from bpy.types import Context, Operator
 from .. import selection
 from ..inputs import RefusalError
 from ..messages import one_line
+from .on_mesh import OnMesh
 
 # Of the square of the longest side: three places nearer to a line than that make no plane.
 LEAST_AREA = 1e-6
 
 
-class BONEMESH_OT_plane_from_vertices(Operator):
+class BONEMESH_OT_plane_from_vertices(OnMesh, Operator):
     """Take the plane through the three selected vertices, such as points on the midline, as the mirror plane"""
 
     bl_idname = "bonemesh.plane_from_vertices"
     bl_label = "Plane from Three Vertices"
     bl_options: ClassVar[set[str]] = {"UNDO"}
-
-    @classmethod
-    def poll(cls, context: Context) -> bool:
-        """Needs a mesh to select on."""
-        active = context.active_object
-        return active is not None and active.type == "MESH"
 
     def execute(self, context: Context) -> set[str]:
         """Notes the plane's numbers."""

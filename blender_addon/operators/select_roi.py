@@ -8,32 +8,23 @@ import bpy
 from bpy.types import Context, Operator
 
 from .. import scene, selection, window
+from ..findings import counted
 from ..inputs import RegionInputs, region_options
 from ..job import Job
 from .background import BackgroundOperator
+from .on_mesh import OnMesh
 
 
-class RegionOperator(BackgroundOperator):
+class RegionOperator(OnMesh, BackgroundOperator):
     """What Select Region of Interest and its mirrored sister share."""
 
     title = ""
-
-    @classmethod
-    def poll(cls, context: Context) -> bool:
-        """Needs a mesh to select on."""
-        active = context.active_object
-        if active is None or active.type != "MESH":
-            cls.poll_message_set(
-                "Make a mesh object active and select vertices of it in Edit Mode"
-            )
-            return False
-        return True
 
     def mirror_options(self, _context: Context) -> dict[str, Any]:
         """Keyword arguments of bonemesh.select_roi for the other side."""
         return {}
 
-    def prepare(self, context: Context) -> Job[bonemesh.Mesh]:
+    def prepare(self, context: Context) -> Job[list[bonemesh.Mesh]]:
         """Checks the panel's fields and copies the active object's mesh and selection."""
         self._inputs = inputs = RegionInputs.read(
             context.scene.bonemesh, bpy.path.abspath
@@ -48,33 +39,38 @@ class RegionOperator(BackgroundOperator):
             **self.mirror_options(context),
         }
 
-        def work(job: Job) -> bonemesh.Mesh:
+        def work(job: Job) -> list[bonemesh.Mesh]:
             whole = bonemesh.Mesh(source.vertices, source.triangles)
-            region = bonemesh.select_roi(
+            watched = {"progress": job.note_progress, "cancel": job.cancel_token}
+            found = bonemesh.select_roi(
                 whole,
                 source.selected,
                 thickness_mm=inputs.thickness_mm,
                 **options,
-                progress=job.note_progress,
-                cancel=job.cancel_token,
+                **watched,
             )
-            job.stop_if_cancelled()
-            region.save(
-                inputs.output, progress=job.note_progress, cancel=job.cancel_token
-            )
-            return region
+            regions = found if isinstance(found, list) else [found]
+            for region, output in zip(
+                regions, inputs.outputs(len(regions)), strict=True
+            ):
+                job.stop_if_cancelled()
+                region.save(output, **watched)
+            return regions
 
         return Job(self.title, work)
 
-    def finish(self, context: Context, result: bonemesh.Mesh) -> str:
-        """Adds the region where it was taken from; the selection and the active object stay."""
-        scene.add_region(
-            context, self._inputs.name, result, self._source, self._options
-        )
-        said = f"{self._inputs.output}: {len(result.triangles):,} triangles"
-        dropped = result.report.get("dropped_pieces", 0)
+    def finish(self, context: Context, result: list[bonemesh.Mesh]) -> str:
+        """Adds the regions where they were taken from; the selection and the active object stay."""
+        outputs = self._inputs.outputs(len(result))
+        for region, output in zip(result, outputs, strict=True):
+            scene.add_region(context, output.stem, region, self._source, self._options)
+        triangles = sum(len(region.triangles) for region in result)
+        last = f" to {outputs[-1].name}" if len(outputs) > 1 else ""
+        said = f"{outputs[0]}{last}: {counted(triangles, 'triangle', 'triangles')}"
+        dropped = result[0].report.get("dropped_pieces", 0)
         if dropped:
-            said += f"; {dropped} pieces of the selection left out (crumbs, or hidden behind others)"
+            pieces = counted(dropped, "piece", "pieces")
+            said += f"; {pieces} of the selection left out (crumbs, or hidden behind others)"
         return said
 
 

@@ -69,3 +69,25 @@ def test_a_cut_along_the_view_goes_where_the_user_looks(
     answer: dict[str, Any],
 ) -> None:
     assert answer["view"] == pytest.approx([0.0, 1.0, 0.0], abs=1e-6)
+
+
+def test_a_region_is_taken_up_again_with_its_selection_and_settings(
+    answer: dict[str, Any],
+) -> None:
+    for name in ("plate", "template", "seen"):
+        resumed = answer[f"{name} resumed"]
+        assert resumed["mode"] == "EDIT_MESH"
+        assert resumed["active"] == "bone"
+        assert resumed["thickness"] == pytest.approx(4.0)
+        assert resumed["same vertices"] and resumed["faces"] > 100
+    plate, template, seen = (
+        answer[f"{name} resumed"] for name in ("plate", "template", "seen")
+    )
+    assert plate["direction"][0] == "outward"
+    assert plate["clearance"] == pytest.approx(0.5)
+    assert template["plane"] == "y" and template["mirror_back"]
+    kind, direction = seen["direction"]
+    assert kind == "given"
+    assert direction == pytest.approx([0.0, 1.0, 0.0], abs=1e-6)
+    assert "renamed" not in answer["source gone"]
+    assert "is gone" in answer["source gone"]

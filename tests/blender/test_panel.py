@@ -72,6 +72,8 @@ def test_the_region_is_measured_cut_and_mirrored_from_a_part_of_its_own(
         "Method [method]",
         "Direction [direction]",
         "Take Hidden Pieces [hidden]",
+        "One for Each Piece [separate]",
+        "Take Region Up Again",
         "Mirror Plane [plane]",
         "Plane from Three Vertices",
         "Put at the Selection [mirror_back]",

@@ -6,7 +6,8 @@ import bonemesh
 import numpy as np
 import pytest
 
-RADIUS = 34.0
+# Between the two surfaces of the shell, of 30 and 36 mm.
+MIDDLE = 33.0
 
 
 @pytest.fixture(scope="module")
@@ -18,7 +19,7 @@ def shell() -> bonemesh.Mesh:
 def cap(shell: bonemesh.Mesh) -> np.ndarray:
     """Vertices of the outer surface on the left side."""
     radius = np.linalg.norm(shell.vertices, axis=1)
-    outer = radius > np.median(radius)
+    outer = radius > MIDDLE
     return np.flatnonzero(outer & (shell.vertices[:, 0] > 0.85 * radius))
 
 
@@ -36,7 +37,9 @@ def test_the_solid_is_closed_and_its_front_is_the_meshs_own(shell, cap):
     assert report["method"] == "solid" and report["direction"] == "normal"
     assert report["thickness_mm"] == 3 and report["selected"] == len(cap)
     assert report["volume_mm3"] == pytest.approx(check["volume_mm3"], rel=1e-6)
-    assert report["volume_mm3"] == pytest.approx(3 * report["patch_mm2"], rel=0.15)
+    # Below a sphere of 36 mm the areas get smaller.
+    mean_area = (1 + 33 / 36 + (33 / 36) ** 2) / 3 * report["patch_mm2"]
+    assert report["volume_mm3"] == pytest.approx(3 * mean_area, rel=0.05)
     assert report["inward"][0] == pytest.approx(-1, abs=0.02)
     own = set(map(tuple, shell.vertices.tolist()))
     front = [tuple(v) in own for v in solid.vertices.tolist()]
@@ -69,6 +72,25 @@ def test_hidden_pieces_are_left_out_unless_asked_for(shell, cap):
     assert seen.vertices[:, 0].min() > 0 and seen.report["dropped_pieces"] > 0
     all_of_it = bonemesh.select_roi(shell, both, thickness_mm=2, hidden=True)
     assert certificate(all_of_it)["components"] >= 2
+
+
+def test_pieces_that_do_not_touch_can_be_solids_of_their_own(shell, cap):
+    left, front = shell.vertices[cap], np.roll(shell.vertices, -1, axis=1)
+    radius = np.linalg.norm(shell.vertices, axis=1)
+    outer = radius > MIDDLE
+    before = np.flatnonzero(outer & (front[:, 0] < -0.95 * radius))
+    both = np.concatenate([before, cap])
+    one = bonemesh.select_roi(shell, both, thickness_mm=2, hidden=True)
+    assert certificate(one)["components"] == 2
+    large, small = bonemesh.select_roi(
+        shell, both, thickness_mm=2, hidden=True, separate=True
+    )
+    assert certificate(large)["components"] == certificate(small)["components"] == 1
+    assert large.vertices[:, 0].min() > 0.8 * left[:, 0].min()
+    assert small.vertices[:, 1].max() < 0
+    volumes = [mesh.report["volume_mm3"] for mesh in (large, small)]
+    assert sum(volumes) == pytest.approx(one.report["volume_mm3"], rel=0.01)
+    assert volumes[0] > volumes[1]
 
 
 @pytest.mark.parametrize(
@@ -143,11 +165,13 @@ def test_the_thickness_under_a_selection(shell, cap):
         ({"mirror_back": True}, "mirror"),
         ({"method": "thesis", "hidden": True}, "solid"),
         ({"method": "thesis", "mirror": "x"}, "solid"),
+        ({"method": "thesis", "separate": True}, "solid"),
+        ({"thickness_mm": 1e-4}, "larger thickness"),
     ],
 )
 def test_choices_that_cannot_be(shell, cap, keywords, says):
     with pytest.raises(bonemesh.BonemeshError) as caught:
-        bonemesh.select_roi(shell, cap, thickness_mm=3, **keywords)
+        bonemesh.select_roi(shell, cap, **{"thickness_mm": 3, **keywords})
     assert says in str(caught.value) and "\n" not in str(caught.value)
 
 

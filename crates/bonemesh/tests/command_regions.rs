@@ -6,6 +6,8 @@ mod common;
 
 use std::path::Path;
 
+use bonemesh_mesh::read_mesh;
+use bonemesh_task::Task;
 use common::command::{bone, bonemesh, json, text};
 use serde_json::Value;
 use tempfile::TempDir;
@@ -27,6 +29,46 @@ fn region(bone: &Path, options: &[&str]) -> (Value, Value) {
     assert_eq!(check["manifold"], true);
     assert_eq!(check["self_intersections"], 0);
     (report, check)
+}
+
+#[test]
+fn each_piece_gets_a_file_of_its_own() {
+    let folder = TempDir::new().unwrap();
+    let bone = bone(folder.path());
+    let mesh = read_mesh(&bone, &Task::default()).unwrap();
+    let lines = (0..)
+        .zip(mesh.vertices_mm())
+        .filter_map(|(number, [x, y, z])| {
+            let is_in = x.abs() > 60.0 && (y + 10.0).hypot(z - 30.0) < 12.0;
+            is_in.then(|| format!("{number}\n"))
+        });
+    let selection = folder.path().join("both.txt");
+    std::fs::write(&selection, lines.collect::<String>()).unwrap();
+    let out = folder.path().join("region.stl");
+    let report = json(&bonemesh(&[
+        "roi",
+        text(&bone),
+        "--selection",
+        text(&selection),
+        "--thickness=3",
+        "--hidden",
+        "--separate",
+        "--json",
+        "-o",
+        text(&out),
+    ]));
+    let regions = report["regions"].as_array().unwrap();
+    assert!(regions.len() >= 2 && !out.exists());
+    let sides = regions.iter().zip(1..).map(|(region, number)| {
+        let file = folder.path().join(format!("region-{number}.stl"));
+        assert_eq!(region["output"], text(&file));
+        assert_eq!(region["watertight"], true);
+        let check = json(&bonemesh(&["check", text(&file), "--json"]));
+        assert_eq!(check["self_intersections"], 0);
+        range_of_x(&check)[0] > 0.0
+    });
+    let sides: Vec<bool> = sides.collect();
+    assert!(sides.contains(&true) && sides.contains(&false));
 }
 
 /// Lowest and highest x (mm): left is positive.

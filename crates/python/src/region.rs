@@ -1,6 +1,8 @@
 //! The region of interest.
 
-use bonemesh::{ClearanceMm, Direction, Mirror, RegionRequest, RoiMethod, ThicknessMm};
+use bonemesh::{
+    ClearanceMm, Direction, Mirror, RegionRequest, RegionResult, RoiMethod, ThicknessMm,
+};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
@@ -27,11 +29,13 @@ use crate::options::Threads;
 ///   own plane of symmetry), "x", "y", "z" (across that axis, through the middle of the mesh's box),
 ///   `(nx, ny, nz, d)` or three places.
 /// - `mirror_back`: put what was taken from the other side where the selection is.
+/// - `separate`: one solid for each piece of the selection that does not touch the others, as a list, the
+///   largest piece first.
 ///
 /// `Mesh.report` says what was done, as `bonemesh roi --json` prints it.
 #[pyfunction]
-#[pyo3(signature = (mesh, selected_vertices, *, thickness_mm, method="solid", direction=None, clearance_mm=None, hidden=false, mirror=None, mirror_back=false, threads=None, progress=None, cancel=None))]
-#[allow(clippy::too_many_arguments)] // keyword arguments, as Python has them
+#[pyo3(signature = (mesh, selected_vertices, *, thickness_mm, method="solid", direction=None, clearance_mm=None, hidden=false, mirror=None, mirror_back=false, separate=false, threads=None, progress=None, cancel=None))]
+#[allow(clippy::too_many_arguments, clippy::fn_params_excessive_bools)] // keyword arguments, as Python has them
 pub(crate) fn select_roi(
     py: Python<'_>,
     mesh: &Mesh,
@@ -43,10 +47,11 @@ pub(crate) fn select_roi(
     hidden: bool,
     mirror: Option<Choice>,
     mirror_back: bool,
+    separate: bool,
     threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
     cancel: Option<&Cancel>,
-) -> PyResult<Mesh> {
+) -> PyResult<Regions> {
     let watch = Watch::new(py, progress, cancel)?;
     let selected = Input::new("selected_vertices", selected_vertices)?.indices()?;
     if mirror_back && mirror.is_none() {
@@ -72,9 +77,22 @@ pub(crate) fn select_roi(
     };
     let parts = mesh.parts();
     detached(py, watch, move |task| {
+        let of = |region: RegionResult| Mesh::of(region.mesh, &region.report);
+        if separate {
+            let regions = bonemesh::select_rois(&parts.mesh()?, &selected, &request, task)?;
+            let regions: Result<Vec<Mesh>, _> = regions.into_iter().map(of).collect();
+            return Ok(Regions::Each(regions?));
+        }
         let region = bonemesh::select_roi(&parts.mesh()?, &selected, &request, task)?;
-        Mesh::of(region.mesh, &region.report)
+        Ok(Regions::All(of(region)?))
     })
+}
+
+/// One mesh of the whole selection, or one of each piece.
+#[derive(IntoPyObject)]
+pub(crate) enum Regions {
+    All(Mesh),
+    Each(Vec<Mesh>),
 }
 
 /// The thickness (mm) of the bone under selected vertices: a dict with min, median and max, or None where

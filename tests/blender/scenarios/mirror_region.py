@@ -65,6 +65,41 @@ def main(zip: str, out: str, ct: str) -> dict[str, Any]:
     bpy.ops.bonemesh.select_roi()
     seen = stage.custom_properties(bpy.data.objects["seen"])
     answer["view"] = seen["bonemesh_direction"]
+    for name in ("plate", "template", "seen"):
+        answer[f"{name} resumed"] = resumed(bone, name)
+    select(bone, range(0, len(bone.data.vertices), 7))
+    bpy.context.view_layer.objects.active = bpy.data.objects["plate"]
+    bone.name = "renamed"
+    answer["source gone"] = stage.message_of(bpy.ops.bonemesh.resume_roi)
+    return answer
+
+
+def resumed(bone: Any, name: str) -> dict[str, Any]:
+    """What the panel says and what is selected after a region was taken up again."""
+    region = bpy.context.scene.bonemesh_region
+    region.direction, region.clearance, region.mirror_back = "normal", 0.1, False
+    region.plane = "auto"
+    bpy.context.scene.bonemesh.cut_thickness = 1.0
+    select(bone, [])
+    bpy.context.view_layer.objects.active = bpy.data.objects[name]
+    bpy.ops.bonemesh.resume_roi()
+    answer = {
+        "mode": bpy.context.mode,
+        "active": bpy.context.view_layer.objects.active.name,
+        "thickness": bpy.context.scene.bonemesh.cut_thickness,
+        "direction": [region.direction, list(region.direction_numbers)],
+        "clearance": region.clearance,
+        "plane": region.plane,
+        "mirror_back": region.mirror_back,
+    }
+    bpy.ops.object.mode_set(mode="OBJECT")
+    kept = list(bpy.data.objects[name]["bonemesh_selected"])
+    chosen = np.zeros(len(bone.data.vertices), dtype=bool)
+    bone.data.vertices.foreach_get("select", chosen)
+    answer["same vertices"] = np.flatnonzero(chosen).tolist() == kept
+    faces = np.zeros(len(bone.data.polygons), dtype=bool)
+    bone.data.polygons.foreach_get("select", faces)
+    answer["faces"] = int(faces.sum())
     return answer
 
 

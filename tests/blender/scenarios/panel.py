@@ -1,5 +1,6 @@
 """What the panels show, read from a layout that takes notes instead of drawing."""
 
+from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -60,7 +61,11 @@ def drawn(
     """Everything that the panel shows now; the values of its buttons are added to `buttons`."""
     shown: list[Any] = []
     layout = Layout(shown, [] if buttons is None else buttons)
-    getattr(bpy.types, panel).draw(SimpleNamespace(layout=layout), bpy.context)
+    cls = getattr(bpy.types, panel)
+    stand_in = SimpleNamespace(layout=layout)
+    if hasattr(cls, "draw_fields"):
+        stand_in.draw_fields = partial(cls.draw_fields, stand_in)
+    cls.draw(stand_in, bpy.context)
     return shown
 
 

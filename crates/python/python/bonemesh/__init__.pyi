@@ -3,7 +3,7 @@
 import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, Literal, SupportsIndex, TypeAlias, final
+from typing import Any, Literal, SupportsIndex, TypeAlias, final, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -424,6 +424,7 @@ def read_mesh(
     progress: _Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Mesh: ...
+@overload
 def select_roi(
     mesh: Mesh,
     selected_vertices: npt.ArrayLike,
@@ -435,10 +436,28 @@ def select_roi(
     hidden: bool = False,
     mirror: _Plane | None = None,
     mirror_back: bool = False,
+    separate: Literal[False] = False,
     threads: SupportsIndex | None = None,
     progress: _Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Mesh: ...
+@overload
+def select_roi(
+    mesh: Mesh,
+    selected_vertices: npt.ArrayLike,
+    *,
+    thickness_mm: float,
+    method: Literal["solid", "thesis"] = "solid",
+    direction: _Direction | None = None,
+    clearance_mm: float | None = None,
+    hidden: bool = False,
+    mirror: _Plane | None = None,
+    mirror_back: bool = False,
+    separate: Literal[True],
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> list[Mesh]: ...
 def local_thickness(
     mesh: Mesh,
     selected_vertices: npt.ArrayLike,
