@@ -30,6 +30,7 @@ mod straight;
 
 use bonemesh_mesh::TriangleMesh;
 use bonemesh_task::Task;
+use rayon::prelude::*;
 
 pub(crate) use self::crop::{Neighbourhood, Space};
 pub(crate) use self::lattice::Frame;
@@ -208,11 +209,15 @@ fn cut_each(
     inward: Option<Vector>,
     task: &Task,
 ) -> Result<Vec<Solid>, RoiError> {
+    let cut = |part: &Patch| {
+        let inward = inward.unwrap_or_else(|| part.inward());
+        cut_out(mesh, part, request, inward, task)
+    };
+    let cuts: Vec<Result<Solid, RoiError>> = parts.par_iter().map(cut).collect();
     let mut solids = Vec::new();
     let mut nothing = None;
-    for part in parts {
-        let inward = inward.unwrap_or_else(|| part.inward());
-        match cut_out(mesh, part, request, inward, task) {
+    for solid in cuts {
+        match solid {
             Err(error @ (RoiError::TooSmall { .. } | RoiError::NothingCut)) => {
                 nothing.get_or_insert(error);
             }
