@@ -1,5 +1,6 @@
 //! What is cut out with, as surfaces.
 
+use bonemesh_mesh::smooth;
 use bonemesh_surface::level_surface;
 use bonemesh_task::Task;
 
@@ -8,6 +9,9 @@ use super::boolean::Body;
 use super::lattice::Lattice;
 use super::straight::Straight;
 use crate::RoiError;
+
+/// How far, in steps, smoothing may move the sides.
+const SMOOTH_STEPS: f64 = 0.6;
 
 /// How places belong to the patch.
 pub(super) enum Cutter<'a> {
@@ -28,10 +32,15 @@ impl Cutter<'_> {
             Self::Below(below) => below.fields(lattice, task),
             Self::Straight(straight) => straight.fields(lattice, task),
         }?;
-        let body = |values: &[f32]| {
+        let surface = |values: &[f32]| {
             let surface = level_surface(values, lattice.shape, &lattice.affine(), task)?;
-            surface.map(Body::of).ok_or(RoiError::NothingCut)
+            surface.ok_or(RoiError::NothingCut)
         };
-        Ok([body(&fields.sides)?, body(&fields.between)?])
+        let mut sides = surface(&fields.sides)?;
+        if let Self::Below(_) = self {
+            // Below a rough patch nearest places jump, and the sides are rough with them.
+            sides = smooth(&sides, SMOOTH_STEPS * lattice.step_mm, task)?.mesh;
+        }
+        Ok([Body::of(sides), Body::of(surface(&fields.between)?)])
     }
 }
