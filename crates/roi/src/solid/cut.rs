@@ -6,12 +6,13 @@ use rustc_hash::FxHashSet;
 
 use super::below::Below;
 use super::boolean::{Body, Stock};
-use super::crop::{Part, Space};
+use super::crop::Part;
 use super::cutter::Cutter;
 use super::far_side::end_at_far_side;
 use super::finish::{Finished, at_patch, finished};
 use super::lattice::{Frame, Lattice, affordable_mm};
 use super::sheet::Sheet;
+use super::space::Space;
 use super::straight::Straight;
 use super::{BESIDE_MM, BULGE};
 use crate::vector::{Vector, plus_scaled};

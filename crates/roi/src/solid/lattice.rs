@@ -2,7 +2,7 @@
 
 use bonemesh_volume::Affine;
 
-use super::crop::Space;
+use super::space::Space;
 use crate::vector::{Vector, cross, dot, plus_scaled, unit};
 
 /// Largest and smallest step between nodes (mm).

@@ -26,14 +26,16 @@ mod patch;
 mod pieces;
 mod refine;
 mod sheet;
+mod space;
 mod straight;
 
 use bonemesh_mesh::TriangleMesh;
 use bonemesh_task::Task;
 use rayon::prelude::*;
 
-pub(crate) use self::crop::{Neighbourhood, Space};
+pub(crate) use self::crop::Neighbourhood;
 pub(crate) use self::lattice::Frame;
+pub(crate) use self::space::Space;
 pub(crate) use self::straight::covered;
 
 use self::cut::Cut;

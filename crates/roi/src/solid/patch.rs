@@ -15,9 +15,10 @@ use bonemesh_task::Task;
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
-use super::crop::{Neighbourhood, Space};
+use super::crop::Neighbourhood;
 use super::flaps::drop_flaps;
 use super::pieces::Pieces;
+use super::space::Space;
 use crate::RoiError;
 use crate::selection::Selection;
 use crate::vector::{Vector, dot, plus_scaled, unit};

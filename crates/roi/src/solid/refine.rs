@@ -5,8 +5,8 @@
 
 use rustc_hash::FxHashMap;
 
-use super::crop::Space;
 use super::patch::Patch;
+use super::space::Space;
 use crate::vector::{Vector, length, minus, plus_scaled};
 
 /// Most triangles; beyond, what is left stays as large as it is.
