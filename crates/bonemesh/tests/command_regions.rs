@@ -71,6 +71,22 @@ fn each_piece_gets_a_file_of_its_own() {
     assert!(sides.contains(&true) && sides.contains(&false));
 }
 
+#[test]
+fn places_and_planes_may_begin_with_a_minus() {
+    let folder = TempDir::new().unwrap();
+    let bone = bone(folder.path());
+    let out = folder.path().join("right.stl");
+    let region = |within: &str, other: [&str; 2]| {
+        let fixed = ["roi", text(&bone), "--thickness", "4", "--json"];
+        let rest = ["-o", text(&out), "--within", within];
+        json(&bonemesh(&[&fixed[..], &rest, &other].concat()));
+        range_of_x(&json(&bonemesh(&["check", text(&out), "--json"])))[0] > 0.0
+    };
+    assert!(region("92,-10,30,25", ["--direction", "-1,0,0"]));
+    assert!(!region("-92,-10,30,25", ["--direction", "normal"]));
+    assert!(region("-92,-10,30,25", ["--mirror", "-1,0,0,0"]));
+}
+
 /// Lowest and highest x (mm): left is positive.
 fn range_of_x(check: &Value) -> [f64; 2] {
     [0, 1].map(|end| check["bounds_mm"][end][0].as_f64().unwrap())

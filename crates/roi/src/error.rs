@@ -83,6 +83,11 @@ pub enum RoiError {
         /// How many vertices are selected.
         selected: usize,
     },
+    /// All selected triangles face away from the eye.
+    #[error(
+        "all of the selection faces away from where it is looked at along the direction; turn the direction round, or take hidden pieces, too"
+    )]
+    FacesAway,
     /// The selection is too narrow for a body of its own.
     #[error(
         "the selected patch of {area_mm2:.2} mm2 is too narrow to cut anything out; select more"
@@ -105,7 +110,7 @@ pub enum RoiError {
     },
     /// The surface is open where it is to be cut.
     #[error(
-        "the surface is open near the selection, so it has no inside to cut out; fill its holes first (bonemesh repair --fill-holes all)"
+        "the surface near the selection is open or its triangles do not all face one way, so it has no inside to cut out; see what is wrong (bonemesh check), and fill holes first (bonemesh repair --fill-holes all)"
     )]
     Open,
     /// Nothing lies below the patch.

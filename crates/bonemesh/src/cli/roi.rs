@@ -34,7 +34,7 @@ pub(super) struct Roi {
         long,
         default_value = "normal",
         value_name = "normal|through|outward|X,Y,Z",
-        allow_negative_numbers = true
+        allow_hyphen_values = true
     )]
     direction: Direction,
     /// The gap between bone and plate, in mm, from 0 to 20; 0.2 if none is given.
@@ -50,11 +50,7 @@ pub(super) struct Roi {
     /// Take what lies on the other side of this plane in place of the selection: auto, the bone's own
     /// plane of symmetry; across the patient's x, y or z, through the middle of the mesh; the places p
     /// with N · p = D; or through three places X,Y,Z;X,Y,Z;X,Y,Z.
-    #[arg(
-        long,
-        value_name = "auto|x|y|z|NX,NY,NZ,D",
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "auto|x|y|z|NX,NY,NZ,D", allow_hyphen_values = true)]
     mirror: Option<PlaneChoice>,
     /// Put what was taken from the other side where the selection is, as the template for an implant.
     #[arg(long, requires = "mirror")]
@@ -91,7 +87,7 @@ pub(super) struct Mirror {
         long,
         default_value = "auto",
         value_name = "auto|x|y|z|NX,NY,NZ,D",
-        allow_negative_numbers = true
+        allow_hyphen_values = true
     )]
     pub(super) plane: PlaneChoice,
     /// Mesh file whose plane of symmetry is found, such as the whole skull that the mesh is a part of.
@@ -112,7 +108,7 @@ pub(super) struct Selection {
     #[arg(long = "selection", value_name = "FILE")]
     pub(super) file: Option<PathBuf>,
     /// Select every vertex within RADIUS mm of the point X,Y,Z instead.
-    #[arg(long, value_name = "X,Y,Z,RADIUS", allow_negative_numbers = true)]
+    #[arg(long, value_name = "X,Y,Z,RADIUS", allow_hyphen_values = true)]
     pub(super) within: Option<Ball>,
 }
 

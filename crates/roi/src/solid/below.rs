@@ -30,7 +30,8 @@ impl Below<'_> {
     fn inside(&self, place: Vector, within_mm: f64, step_mm: f64) -> Option<Inside> {
         let seen = self.sheet.see(place, within_mm)?;
         let depth = seen.depth_mm;
-        let between = (depth - self.top_mm).min(seen.bottom_mm - depth);
+        let bottom_mm = seen.bottom_mm.min(self.bottom_mm);
+        let between = (depth - self.top_mm).min(bottom_mm - depth);
         let between = match &self.kept_off {
             // Next to the inside the value decides where between nodes the surface is.
             Some((bone, distance_mm)) if between > -2.0 * step_mm => {

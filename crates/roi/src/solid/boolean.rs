@@ -19,7 +19,7 @@ const TOLERANCES_MM: [f64; 4] = [1e-4, 1e-4, 4e-4, 1.6e-3];
 /// How often the cancel switch is looked at.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
 
-/// A closed surface, and for each of its triangles the one it lies on.
+/// A closed surface.
 pub(super) struct Body {
     pub(super) vertices_mm: Vec<Vector>,
     pub(super) triangles: Vec<[u32; 3]>,

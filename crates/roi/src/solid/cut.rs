@@ -9,13 +9,14 @@ use super::boolean::{Body, Stock};
 use super::crop::Part;
 use super::cutter::Cutter;
 use super::far_side::end_at_far_side;
-use super::finish::{Finished, at_patch, finished};
+use super::finish::{Finished, finished};
 use super::lattice::{Frame, Lattice, affordable_mm};
 use super::sheet::Sheet;
+use super::shells::at_patch;
 use super::space::Space;
 use super::straight::Straight;
 use super::{BESIDE_MM, BULGE};
-use crate::vector::{Vector, plus_scaled};
+use crate::vector::{Vector, cross, dot, minus, plus_scaled};
 use crate::{Direction, RoiError, SolidRequest};
 
 /// Places of the cutter that are tried.
@@ -62,6 +63,9 @@ impl Cut<'_> {
         let part = Part::of(mesh, &around.wider(self.beside_mm()), task)?;
         let is_front = part.is_of(is_patch);
         let bone = TriangleMesh::new(part.vertices_mm, part.triangles)?;
+        if is_inside_out(&bone) {
+            return Err(RoiError::NothingCut);
+        }
         let lattice = Lattice::around(frame, space, self.step_mm);
         let (stock, cutter) = if direction == Direction::Outward {
             let [sides, between] = self.bodies(&bone, &lattice, task)?;
@@ -81,7 +85,7 @@ impl Cut<'_> {
         for attempt in 0..TRIES {
             let cut = stock.common(&cutter.moved(shift_mm(attempt)), attempt, task)?;
             let cut = match direction {
-                Direction::Normal | Direction::Along(_) => at_patch(cut, &is_front),
+                Direction::Normal | Direction::Along(_) => at_patch(cut, &is_front, task)?,
                 // Behind hollows it does not hang together with the patch; of a plate all is meant.
                 Direction::Through | Direction::Outward => cut.0,
             };
@@ -186,6 +190,18 @@ impl Cut<'_> {
             kept_off: Some((whole.lookup(task)?, clearance_mm)),
         })))
     }
+}
+
+/// Whether a closed surface has its inside outside.
+fn is_inside_out(mesh: &TriangleMesh) -> bool {
+    let Some([from, _]) = mesh.bounds_mm() else {
+        return false;
+    };
+    let parts = mesh.triangles().iter().map(|triangle| {
+        let [a, b, c] = mesh.corners_mm(*triangle).map(|corner| minus(corner, from));
+        dot(a, cross(b, c))
+    });
+    parts.sum::<f64>() < 0.0
 }
 
 /// The corners of a mesh's box.

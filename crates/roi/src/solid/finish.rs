@@ -1,9 +1,9 @@
-//! The part of a cut that belongs to the patch, as a file would hold it.
+//! A cut as a file would hold it.
 
-use bonemesh_mesh::{Sets, TriangleMesh, TriangleTree, check_topology, find_intersections};
+use bonemesh_mesh::{TriangleMesh, TriangleTree, check_topology, find_intersections};
 use bonemesh_task::Task;
 
-use super::boolean::{Body, Source};
+use super::boolean::Body;
 use super::mend::{Places, mended};
 use crate::RoiError;
 use crate::vector::Vector;
@@ -19,31 +19,6 @@ pub(super) enum Finished {
     Sound(TriangleMesh),
     /// In 32-bit coordinates it is not.
     Meets,
-}
-
-/// Keeps what hangs together with the patch. `is_front`: by the triangles of the bone, which of them are
-/// the patch's.
-pub(super) fn at_patch((cut, sources): (Body, Vec<Source>), is_front: &[bool]) -> Body {
-    let mut sets = Sets::new(cut.vertices_mm.len());
-    for &[a, b, c] in &cut.triangles {
-        sets.join(a, b);
-        sets.join(b, c);
-    }
-    let mut is_kept = vec![false; cut.vertices_mm.len()];
-    for (triangle, source) in cut.triangles.iter().zip(&sources) {
-        if matches!(source, Source::First(t) if is_front[*t as usize]) {
-            is_kept[sets.lowest(triangle[0]) as usize] = true;
-        }
-    }
-    let Body {
-        vertices_mm,
-        mut triangles,
-    } = cut;
-    triangles.retain(|t| is_kept[sets.lowest(t[0]) as usize]);
-    Body {
-        vertices_mm,
-        triangles,
-    }
 }
 
 /// Rounds to what a file holds, checks that, and mends where triangles meet.

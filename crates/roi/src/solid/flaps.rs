@@ -7,7 +7,7 @@
 use rustc_hash::FxHashMap;
 
 use super::patch::Patch;
-use crate::vector::{Vector, dot, plus_scaled, unit};
+use crate::vector::{Vector, dot, length, plus_scaled, unit};
 
 /// Side (mm) of the cells over which it is looked what most of the patch faces; with their neighbours.
 const CELL_MM: f64 = 3.0;
@@ -20,28 +20,57 @@ fn cell(place: Vector) -> Cell {
     place.map(|v| (v / CELL_MM).floor() as i64)
 }
 
+/// What some triangles face.
+#[derive(Clone, Copy, Default)]
+struct Facing {
+    sum: Vector,
+    /// The sum of the lengths.
+    all: f64,
+}
+
+impl Facing {
+    fn of(facing: Vector) -> Self {
+        Self {
+            sum: facing,
+            all: length(facing),
+        }
+    }
+
+    fn plus(&self, other: &Self) -> Self {
+        Self {
+            sum: plus_scaled(self.sum, 1.0, other.sum),
+            all: self.all + other.all,
+        }
+    }
+
+    /// Whether most face about the same way; around a thin bone they do not.
+    fn is_common(&self) -> bool {
+        length(self.sum) > ALONG * self.all
+    }
+}
+
 /// Takes the flaps out of a patch.
 pub(super) fn drop_flaps(patch: &mut Patch) {
     let near = &patch.near;
     let facing = |t: u32| near.facing(near.triangles[t as usize]);
-    let mut facings: FxHashMap<Cell, Vector> = FxHashMap::default();
+    let mut facings: FxHashMap<Cell, Facing> = FxHashMap::default();
     for t in patch.own() {
         let sum = facings.entry(cell(near.middle(t))).or_default();
-        *sum = plus_scaled(*sum, 1.0, facing(t));
+        *sum = sum.plus(&Facing::of(facing(t)));
     }
-    let around: FxHashMap<Cell, Vector> = facings
+    let around: FxHashMap<Cell, Facing> = facings
         .keys()
         .map(|cell| {
             let shifts = (0..27).map(|n| [n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1]);
             let cells = shifts.map(|s| [0, 1, 2].map(|axis| cell[axis] + s[axis]));
             let near = cells.filter_map(|cell| facings.get(&cell));
-            (
-                *cell,
-                unit(near.fold([0.0; 3], |sum, n| plus_scaled(sum, 1.0, *n))),
-            )
+            (*cell, near.fold(Facing::default(), |sum, n| sum.plus(n)))
         })
         .collect();
-    let is_apart = |t: &u32| dot(unit(facing(*t)), around[&cell(near.middle(*t))]) < ALONG;
+    let is_apart = |t: &u32| {
+        let most = around[&cell(near.middle(*t))];
+        most.is_common() && dot(unit(facing(*t)), unit(most.sum)) < ALONG
+    };
     let apart = patch.own().filter(is_apart).collect();
     spread_from_border(patch, apart);
 }

@@ -10,6 +10,8 @@ const STEPS_MM: [f64; 2] = [1.2, 0.06];
 /// At least so many steps in the thickness, and in the patch's width.
 const IN_THICKNESS: f64 = 4.0;
 const IN_WIDTH: f64 = 12.0;
+/// At most so many steps in the patch's width.
+const MOST_IN_WIDTH: f64 = 250.0;
 /// Most nodes of a lattice.
 const MOST_NODES: f64 = 2e7;
 /// Steps along the side of a coarse cell; a power of two.
@@ -63,6 +65,7 @@ pub(super) fn step_mm(area_mm2: f64, thickness_mm: f64) -> f64 {
     let [largest, least] = STEPS_MM;
     let step = (thickness_mm / IN_THICKNESS).min(area_mm2.sqrt() / IN_WIDTH);
     step.clamp(least, largest)
+        .max(area_mm2.sqrt() / MOST_IN_WIDTH)
 }
 
 /// The step with which a lattice of that size has not too many nodes.

@@ -26,6 +26,7 @@ mod patch;
 mod pieces;
 mod refine;
 mod sheet;
+mod shells;
 mod space;
 mod straight;
 
@@ -217,7 +218,7 @@ fn cut_each(
     };
     let cuts: Vec<Result<Solid, RoiError>> = parts.par_iter().map(cut).collect();
     let mut solids = Vec::new();
-    let mut nothing = None;
+    let mut nothing = parts.is_empty().then_some(RoiError::NothingCut);
     for solid in cuts {
         match solid {
             Err(error @ (RoiError::TooSmall { .. } | RoiError::NothingCut)) => {
@@ -255,16 +256,17 @@ fn cut_out(
         return Err(RoiError::TooThin {
             thickness_mm,
             area_mm2,
-            least_mm,
+            // As many hundredths as it is said with.
+            least_mm: (100.0 * least_mm).ceil() / 100.0,
         });
     }
     let mut fine = patch.clone();
     let longest_mm = (EDGE_STEPS * step_mm).min(area_mm2.sqrt() / EDGES_IN_WIDTH);
-    fine.refine(&space.wider(EDGES_BESIDE * longest_mm), longest_mm);
+    fine.refine(&space.wider(EDGES_BESIDE * longest_mm), longest_mm, task)?;
     let outline = Outline::of(&fine, BESIDE_MM, task)?;
     let sheet = Sheet::of(&fine.near, &outline, thickness_mm)?;
     let width_mm = sheet.inside_mm.iter().copied().fold(0.0, f64::max);
-    if width_mm < LEAST_STEPS * step_mm {
+    if width_mm < least_mm {
         return Err(RoiError::TooSmall { area_mm2 });
     }
     let cut = Cut {

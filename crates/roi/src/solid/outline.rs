@@ -81,7 +81,7 @@ impl Outline {
         Ok(Self {
             inside_mm,
             normals,
-            smooth_mm: smoothed(near, &neighbours),
+            smooth_mm: smoothed(near, &neighbours, task)?,
         })
     }
 }
@@ -178,16 +178,21 @@ impl Neighbours {
 }
 
 /// The vertices after pairs of steps that do not shrink (Taubin 1995).
-fn smoothed(near: &Neighbourhood, neighbours: &Neighbours) -> Vec<Vector> {
+fn smoothed(
+    near: &Neighbourhood,
+    neighbours: &Neighbours,
+    task: &Task,
+) -> Result<Vec<Vector>, Cancelled> {
     let mut places = near.vertices_mm.clone();
     for step in STEPS.into_iter().cycle().take(2 * ROUNDS) {
+        task.check()?;
         let part = |sum: Vector, n: f64| sum.map(|component| component / n);
         let means = neighbours.means(&places, |a, b| plus_scaled(a, 1.0, b), part);
         for (place, mean) in places.iter_mut().zip(means) {
             *place = plus_scaled(*place, step, minus(mean, *place));
         }
     }
-    places
+    Ok(places)
 }
 
 /// Outward directions, weighted with areas and smoothed, on the patch and beside it on their own.

@@ -26,6 +26,8 @@ use crate::vector::{Vector, dot, plus_scaled, unit};
 /// A hole with less than this part of the patch's area is a gap, and so is one of less than so many mm2.
 const GAP: f64 = 0.02;
 const GAP_MM2: f64 = 2.0;
+/// No hole is a gap that has more than this part.
+const LARGEST_GAP: f64 = 0.25;
 
 /// A patch on a part of a mesh.
 #[derive(Clone)]
@@ -145,7 +147,7 @@ impl Meant {
     /// hidden pieces count, too.
     ///
     /// # Errors
-    /// [`RoiError::NoFace`] where no triangle is selected, or none that can be seen.
+    /// [`RoiError::NoFace`] where no triangle is selected, [`RoiError::FacesAway`] where none can be seen.
     pub(super) fn of(
         near: Neighbourhood,
         selection: &Selection,
@@ -164,8 +166,13 @@ impl Meant {
         let mut has_triangle: Vec<bool> = near.triangles.par_iter().map(is_chosen).collect();
         let pieces = Pieces::of(&near, &has_triangle);
         if pieces.triangles.is_empty() {
-            return Err(RoiError::NoFace {
-                selected: selection.indices().len(),
+            let is_own = |t: &[u32; 3]| t.iter().all(|v| is_selected[*v as usize]);
+            return Err(if near.triangles.iter().any(is_own) {
+                RoiError::FacesAway
+            } else {
+                RoiError::NoFace {
+                    selected: selection.indices().len(),
+                }
             });
         }
         task.check()?;
@@ -199,7 +206,8 @@ impl Meant {
 /// Adds the triangles of small holes to a patch; gives how many holes these were. What reaches out of `space`
 /// is no hole.
 fn close_gaps(patch: &mut Patch, space: &Space) -> usize {
-    let most_mm2 = GAP_MM2.max(GAP * patch.area_mm2());
+    let area_mm2 = patch.area_mm2();
+    let most_mm2 = GAP_MM2.max(GAP * area_mm2).min(LARGEST_GAP * area_mm2);
     let near = &patch.near;
     let mut is_of_patch = vec![false; near.vertices_mm.len()];
     for vertex in patch.own().flat_map(|t| near.triangles[t as usize]) {

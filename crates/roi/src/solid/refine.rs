@@ -3,6 +3,7 @@
 //! Only how places are looked up gets finer, never what is cut: new vertices lie in the middle of edges, and
 //! the surface stays where it is.
 
+use bonemesh_task::{Cancelled, Task};
 use rustc_hash::FxHashMap;
 
 use super::patch::Patch;
@@ -16,14 +17,21 @@ const ROUNDS: usize = 16;
 
 impl Patch {
     /// Halves the edges of triangles that touch `space` until none is longer than `longest_mm`.
-    pub(super) fn refine(&mut self, space: &Space, longest_mm: f64) {
+    pub(super) fn refine(
+        &mut self,
+        space: &Space,
+        longest_mm: f64,
+        task: &Task,
+    ) -> Result<(), Cancelled> {
         for _ in 0..ROUNDS {
+            task.check()?;
             let middles = self.middles(space, longest_mm);
             if middles.is_empty() || self.near.triangles.len() > MOST {
-                return;
+                break;
             }
             self.split(&middles);
         }
+        Ok(())
     }
 
     /// The long edges, each with the vertex that will be its middle.
@@ -103,7 +111,6 @@ mod tests {
     use super::super::crop::Neighbourhood;
     use super::*;
     use bonemesh_mesh::{TriangleMesh, check_topology};
-    use bonemesh_task::Task;
 
     #[test]
     fn a_refined_tetrahedron_is_closed_where_it_was_and_has_short_edges() {
@@ -123,7 +130,7 @@ mod tests {
             low: [-1.0; 3],
             high: [9.0, 9.0, 4.0],
         };
-        fine.refine(&space, 1.0);
+        fine.refine(&space, 1.0, &Task::default()).unwrap();
         let near = &fine.near;
         for triangle in &near.triangles {
             let corners = triangle.map(|v| near.vertices_mm[v as usize]);

@@ -155,3 +155,17 @@ fn a_plate_keeps_off_bone_beside_the_patch() {
     let nearest = nearest.fold(f64::INFINITY, f64::min);
     assert!((0.9..1.2).contains(&nearest), "{nearest}");
 }
+
+#[test]
+fn a_plate_thicker_than_the_bone_stays_outside_of_it() {
+    let shell = shell();
+    let patch = selected(&shell, |p| length(p) > 17.0 && p[2] > 19.0);
+    let plate = SolidRequest {
+        direction: Direction::Outward,
+        ..request(12.0)
+    };
+    let plate = sound(&shell, &patch, &plate);
+    let nearest = plate.mesh.vertices_mm().iter().map(|p| length(*p));
+    let nearest = nearest.fold(f64::INFINITY, f64::min);
+    assert!(nearest > 20.1, "{nearest}");
+}

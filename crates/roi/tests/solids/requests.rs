@@ -1,12 +1,13 @@
 //! What does not matter for a solid, and what makes none.
 
+use std::f64::consts::PI;
 use std::num::NonZeroUsize;
 
 use bonemesh_mesh::TriangleMesh;
-use bonemesh_roi::{RoiError, select_solid};
+use bonemesh_roi::{Direction, RoiError, SolidRequest, select_solid};
 use bonemesh_task::{Task, pool};
 
-use crate::bodies::{length, request, selected, shell, solid};
+use crate::bodies::{body, length, request, selected, shell, solid, sound, volume_mm3};
 
 #[test]
 fn the_solid_does_not_depend_on_threads_or_on_the_order_of_the_selection() {
@@ -47,4 +48,39 @@ fn what_cannot_be_cut_is_refused() {
     task.cancel().cancel();
     let cancelled = select_solid(&shell, &patch, &request, &task).unwrap_err();
     assert!(matches!(cancelled, RoiError::Cancelled(_)));
+}
+
+#[test]
+fn what_is_wrong_with_a_request_is_said() {
+    let shell = shell();
+    let patch = selected(&shell, |p| length(p) > 17.0 && p[2] > 17.0);
+    let task = Task::default();
+    let error =
+        |mesh: &TriangleMesh, request| select_solid(mesh, &patch, &request, &task).unwrap_err();
+    let turned = shell.triangles().iter().map(|[a, b, c]| [*a, *c, *b]);
+    let turned = TriangleMesh::new(shell.vertices_mm().to_vec(), turned.collect()).unwrap();
+    assert!(matches!(error(&turned, request(3.0)), RoiError::NothingCut));
+    assert!(matches!(
+        error(&shell, request(0.01)),
+        RoiError::TooThin { .. }
+    ));
+    let from_behind = SolidRequest {
+        direction: Direction::along([0.0, 0.0, 1.0]).unwrap(),
+        ..request(3.0)
+    };
+    assert!(matches!(error(&shell, from_behind), RoiError::FacesAway));
+}
+
+#[test]
+fn a_thin_bone_selected_on_both_sides_is_cut_out_whole() {
+    let lamella = body([10.0, 10.0, 2.0], |[x, y, z]| {
+        (8.0 - x.abs()).min(8.0 - y.abs()).min(0.8 - z.abs())
+    });
+    let patch = selected(&lamella, |[x, y, _]| x.hypot(y) < 5.0);
+    let both = SolidRequest {
+        with_hidden: true,
+        ..request(3.0)
+    };
+    let part = volume_mm3(&sound(&lamella, &patch, &both)) / (PI * 25.0 * 1.6);
+    assert!((part - 1.0).abs() < 0.03, "{part}");
 }

@@ -97,3 +97,36 @@ fn a_plate_is_cut_straight_through_or_part_of_the_way() {
         assert!((part - 1.0).abs() < 0.01, "{thickness} mm: {part}");
     }
 }
+
+#[test]
+fn hollows_in_what_is_cut_stay_hollow() {
+    let shell = shell();
+    let is_outer = |p: [f64; 3]| length(p) > 17.0;
+    let whole = selected(&shell, is_outer);
+    let inner = selected(&shell, |p| !is_outer(p));
+    let between = |low: f64, high: f64| 4.0 / 3.0 * PI * (high.powi(3) - low.powi(3));
+    for (patch, thickness, expected) in [
+        (&whole, 3.0, between(17.0, 20.0)),
+        (&whole, 6.0, between(14.0, 20.0)),
+        (&inner, 3.0, between(14.0, 17.0)),
+    ] {
+        let part = volume_mm3(&solid(&shell, patch, thickness)) / expected;
+        assert!((part - 1.0).abs() < 0.01, "{thickness} mm: {part}");
+    }
+}
+
+#[test]
+fn a_void_in_the_bone_stays_a_void() {
+    let void = |[x, y, z]: [f64; 3]| length([x - 12.0, y, z]) - 1.4;
+    let ball = body([21.0; 3], |p| (20.0 - length(p)).min(void(p)));
+    let full = body([21.0; 3], |p| 20.0 - length(p));
+    let is_in = |[x, y, z]: [f64; 3]| x > 0.0 && y.hypot(z) < 9.0;
+    // Narrower than what ends a cut, it counts as a pore.
+    let cut = |ball: &TriangleMesh| {
+        let patch = selected(ball, |p| is_in(p) && length(p) > 19.0);
+        volume_mm3(&solid(ball, &patch, 14.0))
+    };
+    let missing = cut(&full) - cut(&ball);
+    let expected = 4.0 / 3.0 * PI * 1.4_f64.powi(3);
+    assert!((missing / expected - 1.0).abs() < 0.1, "{missing}");
+}
