@@ -24,8 +24,10 @@ const TRIES: u32 = 12;
 /// How far (mm, and steps) beyond what is cut the bone is closed with lids: farther than the lattice goes.
 const LID_MM: f64 = 0.5;
 const LID_BEYOND_STEPS: f64 = 4.0;
-/// Steps that the lid lies above the patch, so that nothing of it lies in the bone's surface.
+/// How far (steps, and mm at least) the lid lies above the smoothed patch, so that all of the bone's surface
+/// lies below it.
 const LID_STEPS: f64 = 1.5;
+const LEAST_LID_MM: f64 = 0.8;
 /// How far (mm) the smoothed patch may lie outside of the bone, where a plate keeps its distance.
 const SMOOTHED_MM: f64 = 1.0;
 /// How far (mm) the cutter is moved from try to try, at most: less than a scan can tell.
@@ -134,7 +136,7 @@ impl Cut<'_> {
     }
 
     fn lid_mm(&self) -> f64 {
-        LID_STEPS * self.step_mm
+        LEAST_LID_MM.max(LID_STEPS * self.step_mm)
     }
 
     /// The box, in a frame, that all that is cut lies in.

@@ -4,11 +4,12 @@
 //! 2. [`patch`]: which triangles were meant, by their [`pieces`], without [`flaps`].
 //! 3. [`refine`], [`outline`]: the patch's outline, smooth, and how far vertices are from it.
 //! 4. [`sheet`]: the patch and what is around it, as places are looked up.
-//! 5. [`cut`]: the rest. [`far_side`]: how deep the bone below the patch is. [`cutter`]: the body of all places that belong to the patch, [`below`] it or [`straight`] behind it, on
-//!    the nodes of a [`lattice`].
-//! 6. [`boolean`]: what bone and cutter have in common.
-//! 7. [`finish`]: the part of it at the patch, checked as a file would hold it. Where 32-bit coordinates
-//!    make triangles meet, the cutter is moved by microns and cuts again.
+//! 5. [`cut`]: the rest. [`far_side`]: how deep the bone below the patch is.
+//! 6. [`cutter`]: the body of all places that belong to the patch, [`below`] it or [`straight`] behind it, as
+//!    the common part of two whose [`fields`] are known on the nodes of a [`lattice`].
+//! 7. [`boolean`]: what bone and cutter have in common; [`shells`]: what of it lies at the patch.
+//! 8. [`finish`]: checked as a file would hold it. Where 32-bit coordinates make triangles meet, slivers are
+//!    collapsed ([`mend`]) or, if that is not enough, the cutter is moved by microns and cuts again.
 
 mod below;
 mod boolean;
