@@ -106,6 +106,11 @@ def add_region(
 
 def source_of(region: Any) -> Any:
     """The object that a region was cut from, if its vertices can still be those that were selected."""
+    needed = ("selected", "thickness_mm", "method")
+    if not all(f"bonemesh_{key}" in region for key in needed):
+        raise RefusalError(
+            f'"{region.name}" no longer says how it was cut; select on the bone anew'
+        )
     name = region[SOURCE]
     source = bpy.data.objects.get(name)
     if source is None or source.type != "MESH":

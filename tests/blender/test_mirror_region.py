@@ -91,3 +91,4 @@ def test_a_region_is_taken_up_again_with_its_selection_and_settings(
     assert direction == pytest.approx([0.0, 1.0, 0.0], abs=1e-6)
     assert "renamed" not in answer["source gone"]
     assert "is gone" in answer["source gone"]
+    assert "no longer says how" in answer["settings gone"]

@@ -71,6 +71,8 @@ def main(zip: str, out: str, ct: str) -> dict[str, Any]:
     bpy.context.view_layer.objects.active = bpy.data.objects["plate"]
     bone.name = "renamed"
     answer["source gone"] = stage.message_of(bpy.ops.bonemesh.resume_roi)
+    del bpy.data.objects["plate"]["bonemesh_thickness_mm"]
+    answer["settings gone"] = stage.message_of(bpy.ops.bonemesh.resume_roi)
     return answer
 
 

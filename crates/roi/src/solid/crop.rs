@@ -148,9 +148,7 @@ impl Part {
                 .collect(),
         })
     }
-}
 
-impl Part {
     /// Which of its triangles are these of the whole mesh, uncut.
     pub(super) fn is_of(&self, triangles: &FxHashSet<[u32; 3]>) -> Vec<bool> {
         let whole = |t: &[u32; 3]| {

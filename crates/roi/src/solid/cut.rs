@@ -65,9 +65,6 @@ impl Cut<'_> {
         let part = Part::of(mesh, &around.wider(self.beside_mm()), task)?;
         let is_front = part.is_of(is_patch);
         let bone = TriangleMesh::new(part.vertices_mm, part.triangles)?;
-        if is_inside_out(&bone) {
-            return Err(RoiError::NothingCut);
-        }
         let lattice = Lattice::around(frame, space, self.step_mm);
         let (stock, cutter) = if direction == Direction::Outward {
             let [sides, between] = self.bodies(&bone, &lattice, task)?;
@@ -82,7 +79,12 @@ impl Cut<'_> {
                     Ok(Stock::of(sides, task)?.common(&between, 0, task)?.0)
                 },
             );
-            (stock?, cutter?)
+            let stock = stock?;
+            // Of an open surface, which is refused before, that would say nothing.
+            if is_inside_out(&bone) {
+                return Err(RoiError::NothingCut);
+            }
+            (stock, cutter?)
         };
         for attempt in 0..TRIES {
             let cut = stock.common(&cutter.moved(shift_mm(attempt)), attempt, task)?;

@@ -245,29 +245,14 @@ fn cut_out(
     let space = patch.space().ok_or(RoiError::NothingCut)?;
     let (area_mm2, is_patch) = (patch.area_mm2(), patch.of_mesh());
     let thickness_mm = request.thickness.mm();
-    let cut_space = match (request.direction, mesh.bounds_mm()) {
-        (Direction::Normal | Direction::Through | Direction::Along(_), Some([low, high])) => {
-            space.wider(thickness_mm).common(&Space { low, high })
-        }
-        _ => space.wider(request.reach_mm()),
-    };
-    let step_mm = affordable_mm(&cut_space, step_mm(area_mm2, thickness_mm));
-    let least_mm = LEAST_STEPS * step_mm;
-    if thickness_mm < least_mm {
-        return Err(RoiError::TooThin {
-            thickness_mm,
-            area_mm2,
-            // As many hundredths as it is said with.
-            least_mm: (100.0 * least_mm).ceil() / 100.0,
-        });
-    }
+    let step_mm = fitting_step_mm(mesh, &space, area_mm2, request)?;
     let mut fine = patch.clone();
     let longest_mm = (EDGE_STEPS * step_mm).min(area_mm2.sqrt() / EDGES_IN_WIDTH);
     fine.refine(&space.wider(EDGES_BESIDE * longest_mm), longest_mm, task)?;
     let outline = Outline::of(&fine, BESIDE_MM, task)?;
     let sheet = Sheet::of(&fine.near, &outline, thickness_mm)?;
     let width_mm = sheet.inside_mm.iter().copied().fold(0.0, f64::max);
-    if width_mm < least_mm {
+    if width_mm < LEAST_STEPS * step_mm {
         return Err(RoiError::TooSmall { area_mm2 });
     }
     let cut = Cut {
@@ -284,4 +269,31 @@ fn cut_out(
         dropped: 0,
         closed: 0,
     })
+}
+
+/// How far apart the nodes are for a patch of that box and area, where so thin a cut can be told at all.
+fn fitting_step_mm(
+    mesh: &TriangleMesh,
+    space: &Space,
+    area_mm2: f64,
+    request: &SolidRequest,
+) -> Result<f64, RoiError> {
+    let thickness_mm = request.thickness.mm();
+    let cut_space = match (request.direction, mesh.bounds_mm()) {
+        (Direction::Normal | Direction::Through | Direction::Along(_), Some([low, high])) => {
+            space.wider(thickness_mm).common(&Space { low, high })
+        }
+        _ => space.wider(request.reach_mm()),
+    };
+    let step_mm = affordable_mm(&cut_space, step_mm(area_mm2, thickness_mm));
+    let least_mm = LEAST_STEPS * step_mm;
+    if thickness_mm < least_mm {
+        return Err(RoiError::TooThin {
+            thickness_mm,
+            area_mm2,
+            // As many hundredths as it is said with.
+            least_mm: (100.0 * least_mm).ceil() / 100.0,
+        });
+    }
+    Ok(step_mm)
 }
