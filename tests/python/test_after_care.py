@@ -46,6 +46,17 @@ def test_holes_are_filled_up_to_a_size(shell: bonemesh.Mesh) -> None:
     assert left["place_mm"][:2] == pytest.approx(middle[:2], abs=2)
 
 
+def test_what_faces_the_wrong_way_is_turned(shell: bonemesh.Mesh) -> None:
+    wrong = shell.triangles.copy()
+    wrong[5:7] = wrong[5:7, ::-1]
+    turned = bonemesh.face_outward(bonemesh.Mesh(shell.vertices, wrong))
+    assert turned.report["turned_triangles"] == 2
+    assert is_printable(turned)
+    inside_out = bonemesh.Mesh(shell.vertices, shell.triangles[:, ::-1])
+    assert not is_printable(inside_out)
+    assert is_printable(bonemesh.face_outward(inside_out))
+
+
 @pytest.mark.parametrize("bad", ["every", -1.0, float("nan")])
 def test_what_is_no_size_of_holes_is_refused(shell: bonemesh.Mesh, bad: object) -> None:
     with pytest.raises(bonemesh.BonemeshError):

@@ -46,6 +46,19 @@ def test_the_solid_is_closed_and_its_front_is_the_meshs_own(shell, cap):
     assert sum(front) > 0.5 * len(cap)
 
 
+def test_a_triangle_that_faces_the_wrong_way_is_turned_first(shell, cap):
+    wrong = shell.triangles.copy()
+    near = np.flatnonzero(np.isin(wrong, cap).all(axis=1))[3]
+    wrong[near] = wrong[near, ::-1]
+    solid = bonemesh.select_roi(
+        bonemesh.Mesh(shell.vertices, wrong), cap, thickness_mm=3
+    )
+    certificate(solid)
+    assert solid.report["turned_triangles"] == 1
+    sound = bonemesh.select_roi(shell, cap, thickness_mm=3)
+    assert solid.report["volume_mm3"] == pytest.approx(sound.report["volume_mm3"])
+
+
 def test_directions(shell, cap):
     middle = np.linalg.norm(shell.vertices[cap], axis=1).mean()
     plate = bonemesh.select_roi(

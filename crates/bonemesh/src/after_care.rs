@@ -1,10 +1,10 @@
-//! What is done to a finished mesh: holes, islands, cavities, smoothing, fewer triangles.
+//! What is done to a finished mesh: winding, holes, islands, cavities, smoothing, fewer triangles.
 
 use std::time::Instant;
 
 use bonemesh_mesh::{
     Decimation, HoleLeft, HoleLimits, HoleReason, HolesFilled, Islands, Kept, TriangleMesh,
-    decimate, fill_cavities, fill_holes, keep_islands, smooth,
+    decimate, face_outward, fill_cavities, fill_holes, keep_islands, smooth,
 };
 use bonemesh_task::Task;
 use serde::Serialize;
@@ -34,6 +34,9 @@ pub enum Holes {
 /// What is done to a finished mesh, in the order of the fields; by default nothing.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct AfterCare {
+    /// Whether triangles that face another way than their neighbours, and parts that are inside out, are
+    /// turned over. Meshes that are rendered have none.
+    pub face_outward: bool,
     /// Which holes are filled; `None` fills none.
     pub holes: Option<Holes>,
     /// Which islands are kept; `None` keeps all, but of an isosurface or labelled one that is
@@ -50,6 +53,8 @@ pub struct AfterCare {
 /// What [`care_for`] did.
 #[derive(Clone, Debug, PartialEq, Default, Serialize)]
 pub struct AfterCareReport {
+    /// Triangles turned over; `None` if none were to be.
+    pub turned_triangles: Option<usize>,
     /// Holes filled; `None` if none were to be.
     pub filled_holes: Option<usize>,
     /// Holes that are still there after filling.
@@ -133,6 +138,11 @@ pub fn care_for(
     let clock = Instant::now();
     let mut report = AfterCareReport::default();
     let mut mesh = mesh;
+    if care.face_outward {
+        let faced = face_outward(&mesh, task)?;
+        report.turned_triangles = Some(faced.turned);
+        mesh = faced.mesh;
+    }
     if let Some(holes) = care.holes {
         let limits = HoleLimits {
             at_most_mm: match holes {

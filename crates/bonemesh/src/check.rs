@@ -227,20 +227,20 @@ fn reasons(topology: &Topology, found: &Intersections, nesting: Nesting) -> Vec<
         topology.inconsistent_edges,
         "edge whose two triangles face opposite ways",
         "edges whose two triangles face opposite ways",
-        "turn the triangles (in Blender: Mesh > Normals > Recalculate Outside)",
+        "turn the triangles (bonemesh repair; in Blender: Mesh > Normals > Recalculate Outside)",
     );
     add(
         usize::from(topology.watertight && topology.volume_mm3 <= 0.0),
         "surface that is inside out",
         "",
-        "turn the triangles (in Blender: Mesh > Normals > Recalculate Outside)",
+        "turn the triangles (bonemesh repair; in Blender: Mesh > Normals > Recalculate Outside)",
     );
     if topology.volume_mm3 > 0.0 {
         add(
             nesting.inside_out,
             "part that is inside out",
             "parts that are inside out",
-            "turn their triangles (in Blender: Mesh > Normals > Recalculate Outside)",
+            "turn their triangles (bonemesh repair; in Blender: Mesh > Normals > Recalculate Outside)",
         );
     }
     add(

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::num::NonZeroUsize;
 use std::time::Instant;
 
-use bonemesh_mesh::{HoleLimits, TriangleMesh, fill_holes};
+use bonemesh_mesh::{HoleLimits, TriangleMesh, face_outward, fill_holes};
 use bonemesh_roi::{
     ClearanceMm, Direction, Method, RoiError, Solid, SolidRequest, ThicknessMm, counterpart,
     select_region, select_solid, select_solids,
@@ -12,7 +12,7 @@ use bonemesh_roi::{
 use bonemesh_task::{Task, pool};
 
 use crate::mirror::PlaneChoice;
-use crate::region_report::{RegionReport, SolidReport, ThesisReport};
+use crate::region_report::{Mended, RegionReport, SolidReport, ThesisReport};
 use crate::report::check;
 use crate::{Error, choices};
 
@@ -172,10 +172,10 @@ fn solids(
         with_hidden: request.with_hidden,
     };
     let Some(mirror) = request.mirror else {
-        let (solids, filled) = with_holes_filled(mesh, selected, &solid_request, is_each, task)?;
+        let (solids, mended) = with_mesh_mended(mesh, selected, &solid_request, is_each, task)?;
         let solids = solids.into_iter();
         return Ok(solids
-            .map(|solid| SolidReport::of(solid, filled, None))
+            .map(|solid| SolidReport::of(solid, mended, None))
             .collect());
     };
     let chosen = mirror.plane.choose(mesh, request.threads, task)?;
@@ -184,25 +184,25 @@ fn solids(
         solid_request.direction = Direction::along(chosen.plane.mirrored_direction(direction))?;
     }
     let other = counterpart(mesh, selected, &chosen.plane, task)?;
-    let (solids, filled) = with_holes_filled(mesh, &other, &solid_request, is_each, task)?;
+    let (solids, mended) = with_mesh_mended(mesh, &other, &solid_request, is_each, task)?;
     let placed = |mut solid: Solid| {
         if mirror.back {
             solid.mesh = solid.mesh.mirrored(&chosen.plane);
         }
-        SolidReport::of(solid, filled, Some(chosen.report))
+        SolidReport::of(solid, mended, Some(chosen.report))
     };
     Ok(solids.into_iter().map(placed).collect())
 }
 
-/// Cuts; where the surface is open, joins vertices at one place and fills the holes first. Gives how many
-/// these were.
-fn with_holes_filled(
+/// Cuts; where the surface is open or does not face one way, joins vertices at one place, turns triangles over
+/// and fills the holes first. Gives what of this was done.
+fn with_mesh_mended(
     mesh: &TriangleMesh,
     selected: &[u32],
     request: &SolidRequest,
     is_each: bool,
     task: &Task,
-) -> Result<(Vec<Solid>, usize), Error> {
+) -> Result<(Vec<Solid>, Mended), Error> {
     let cut = |mesh: &TriangleMesh, selected: &[u32]| {
         if is_each {
             select_solids(mesh, selected, request, task)
@@ -212,11 +212,16 @@ fn with_holes_filled(
     };
     match cut(mesh, selected) {
         Err(RoiError::Open) => {
-            let filled = fill_holes(mesh, HoleLimits::default(), task)?;
+            let faced = face_outward(mesh, task)?;
+            let filled = fill_holes(&faced.mesh, HoleLimits::default(), task)?;
+            let mended = Mended {
+                turned_triangles: faced.turned,
+                filled_holes: filled.filled,
+            };
             let selected = renumbered(selected, mesh, &filled.mesh);
-            Ok((cut(&filled.mesh, &selected)?, filled.filled))
+            Ok((cut(&filled.mesh, &selected)?, mended))
         }
-        solids => Ok((solids?, 0)),
+        solids => Ok((solids?, Mended::default())),
     }
 }
 

@@ -121,6 +121,8 @@ pub struct SolidReport {
     pub dropped_pieces: usize,
     /// Gaps in the selection that were closed.
     pub closed_gaps: usize,
+    /// Triangles of the mesh that were turned over first, to face as their neighbours do.
+    pub turned_triangles: usize,
     /// Holes of the mesh that were filled first.
     pub filled_holes: usize,
     /// The plane between the sides, if the other side's counterpart was taken.
@@ -128,11 +130,18 @@ pub struct SolidReport {
     pub mirror: Option<PlaneReport>,
 }
 
+/// What was done to the mesh before a solid was cut.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Mended {
+    pub(crate) turned_triangles: usize,
+    pub(crate) filled_holes: usize,
+}
+
 impl SolidReport {
     /// The solid's mesh, and what is said of it.
     pub(crate) fn of(
         solid: Solid,
-        filled_holes: usize,
+        mended: Mended,
         mirror: Option<PlaneReport>,
     ) -> (TriangleMesh, Self) {
         let report = Self {
@@ -142,7 +151,8 @@ impl SolidReport {
             patch_mm2: solid.patch_mm2,
             dropped_pieces: solid.dropped,
             closed_gaps: solid.closed,
-            filled_holes,
+            turned_triangles: mended.turned_triangles,
+            filled_holes: mended.filled_holes,
             mirror,
         };
         (solid.mesh, report)

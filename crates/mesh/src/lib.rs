@@ -5,7 +5,7 @@
 //! through, overlap or touch one another; [`wall_thickness`] measures through the body.
 //! [`keep_islands`], [`fill_cavities`], [`smooth`] and [`decimate`] give a new mesh: what was a closed
 //! 2-manifold that passes through itself nowhere still is one, with the coordinates that a file holds.
-//! [`fill_holes`] closes what is open.
+//! [`fill_holes`] closes what is open, [`face_outward`] turns over what faces the wrong way.
 //!
 //! Limits: files hold 32-bit floats, so a mesh comes back rounded to them (about 0.00002 mm at
 //! 200 mm from the origin). Only STL, PLY, OBJ and 3MF are read and written.
@@ -74,8 +74,8 @@ pub use io::{
 };
 pub use mesh::TriangleMesh;
 pub use parts::{
-    Island, Islands, Kept, Nesting, RemovedPart, check_nesting, fill_cavities, keep_islands,
-    take_islands,
+    FacedOutward, Island, Islands, Kept, Nesting, RemovedPart, check_nesting, face_outward,
+    fill_cavities, keep_islands, take_islands,
 };
 pub use plane::Plane;
 pub use smooth::{Smoothed, smooth};

@@ -103,6 +103,22 @@ pub(crate) fn fill_holes(
     cared_for(py, mesh, care, progress, cancel)
 }
 
+/// Turn over triangles that face another way than their neighbours, and closed parts that are inside out.
+#[pyfunction]
+#[pyo3(signature = (mesh, *, progress=None, cancel=None))]
+pub(crate) fn face_outward(
+    py: Python<'_>,
+    mesh: &Mesh,
+    progress: Option<Py<PyAny>>,
+    cancel: Option<&Cancel>,
+) -> PyResult<Mesh> {
+    let care = AfterCare {
+        face_outward: true,
+        ..AfterCare::default()
+    };
+    cared_for(py, mesh, care, progress, cancel)
+}
+
 /// Keep the "largest" island, all of at least a volume in mm3, or the bones at a list of places (mm),
 /// each with its cavities.
 #[pyfunction]

@@ -40,7 +40,9 @@ mod _native {
     use super::{Bound, PyModule, PyModuleMethods, PyResult};
 
     #[pymodule_export]
-    use crate::after_care::{decimate, fill_cavities, fill_holes, keep_islands, smooth};
+    use crate::after_care::{
+        decimate, face_outward, fill_cavities, fill_holes, keep_islands, smooth,
+    };
     #[pymodule_export]
     use crate::cancel::Cancel;
     #[pymodule_export]

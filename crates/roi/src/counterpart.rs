@@ -1,22 +1,27 @@
 //! What of a mirrored body's other side lies where the selection is seen in the mirror.
 //!
 //! The selection may go around a defect, where nothing can be selected. So it is looked at as an area, seen
-//! along its own mean direction: its triangles as a relief, gaps and holes in it closed. On the other side
+//! along its own mean direction: its triangles as a relief, gaps and holes in it closed. Pieces that face other
+//! ways, such as those on both sides of the head, are looked at on their own. On the other side
 //! those vertices count whose mirror images lie in that area, about as deep, and face the same way.
 
-use bonemesh_mesh::{Plane, TriangleMesh};
+use std::collections::BTreeMap;
+
+use bonemesh_mesh::{Plane, Sets, TriangleMesh};
 use bonemesh_task::Task;
 
 use crate::RoiError;
 use crate::selection::Selection;
 use crate::solid::{Frame, Neighbourhood, Space, covered};
-use crate::vector::{Vector, cross, dot, minus, plus_scaled};
+use crate::vector::{Vector, cross, dot, length, minus, plus_scaled, unit};
 
 /// Side of a cell of the area (mm); larger where the area is.
 const CELL_MM: f64 = 0.5;
 const MOST_CELLS: f64 = 4e6;
 /// Gaps in the area up to twice as wide (mm) are closed.
 const GAP_MM: f64 = 1.5;
+/// Cosine of the most that pieces looked at together face apart.
+const SAME_SIDE: f64 = 0.5;
 /// How much deeper or higher (mm) than the selection the other side may be.
 const UNEVEN_MM: f64 = 10.0;
 
@@ -39,42 +44,89 @@ pub fn counterpart(
             selected: selection.indices().len(),
         });
     }
-    let facing = |corners: [Vector; 3]| {
-        let [a, b, c] = corners;
-        cross(minus(b, a), minus(c, a))
-    };
-    let sum = patch.iter().fold([0.0; 3], |sum, t| {
-        plus_scaled(sum, 1.0, facing(mesh.corners_mm(*t)))
-    });
-    let inward = crate::vector::unit(sum.map(|v| -v));
-    let area = Area::of(mesh, &patch, Frame::along(inward)).ok_or(RoiError::NoCounterpart)?;
-    task.check()?;
-    let places = selection
-        .indices()
-        .iter()
-        .map(|v| mesh.vertices_mm()[*v as usize]);
-    let images = places.map(|place| plane.mirrored(place));
-    let space = Space::of(images).ok_or(RoiError::NoSelection)?;
-    let other = Neighbourhood::around(mesh, &space.wider(UNEVEN_MM), task)?;
-    let mut normals = vec![[0.0; 3]; other.vertices_mm.len()];
-    for triangle in &other.triangles {
-        let facing = other.facing(*triangle);
-        for vertex in triangle {
-            let normal = &mut normals[*vertex as usize];
-            *normal = plus_scaled(*normal, 1.0, facing);
-        }
+    let mut found = Vec::new();
+    for side in sides(mesh, patch) {
+        found.extend(side.opposite(mesh, plane, task)?);
     }
-    let looks_in = plane.mirrored_direction(inward);
-    let vertices = other.vertices_mm.iter().zip(&normals).zip(&other.of_mesh);
-    let found = vertices.filter(|((place, normal), _)| {
-        dot(**normal, looks_in) < 0.0 && area.has(plane.mirrored(**place))
-    });
-    let mut found: Vec<u32> = found.map(|(_, vertex)| *vertex).collect();
     found.sort_unstable();
+    found.dedup();
     if found.len() < 3 {
         return Err(RoiError::NoCounterpart);
     }
     Ok(found)
+}
+
+/// A part of a selection that is looked at along one direction.
+struct Side {
+    triangles: Vec<[u32; 3]>,
+    /// Twice the area, along the directions that the triangles face.
+    facing: Vector,
+}
+
+/// The pieces of a patch that hang together, those that face about the same way as one side: they may lie
+/// around one defect. The largest piece first.
+fn sides(mesh: &TriangleMesh, patch: Vec<[u32; 3]>) -> Vec<Side> {
+    let mut sets = Sets::new(mesh.vertices_mm().len());
+    for [a, b, c] in &patch {
+        sets.join(*a, *b);
+        sets.join(*b, *c);
+    }
+    let mut pieces: BTreeMap<u32, Side> = BTreeMap::new();
+    for triangle in patch {
+        let [a, b, c] = mesh.corners_mm(triangle);
+        let piece = pieces.entry(sets.lowest(triangle[0])).or_insert(Side {
+            triangles: Vec::new(),
+            facing: [0.0; 3],
+        });
+        piece.facing = plus_scaled(piece.facing, 1.0, cross(minus(b, a), minus(c, a)));
+        piece.triangles.push(triangle);
+    }
+    let mut pieces: Vec<Side> = pieces.into_values().collect();
+    pieces.sort_by(|a, b| length(b.facing).total_cmp(&length(a.facing)));
+    let mut sides: Vec<Side> = Vec::new();
+    for piece in pieces {
+        let same = |side: &&mut Side| dot(unit(side.facing), unit(piece.facing)) > SAME_SIDE;
+        if let Some(side) = sides.iter_mut().find(same) {
+            side.facing = plus_scaled(side.facing, 1.0, piece.facing);
+            side.triangles.extend(piece.triangles);
+        } else {
+            sides.push(piece);
+        }
+    }
+    sides
+}
+
+impl Side {
+    /// The vertices whose mirror images lie in its area.
+    fn opposite(
+        &self,
+        mesh: &TriangleMesh,
+        plane: &Plane,
+        task: &Task,
+    ) -> Result<Vec<u32>, RoiError> {
+        let inward = unit(self.facing.map(|v| -v));
+        let area = Area::of(mesh, &self.triangles, Frame::along(inward));
+        let area = area.ok_or(RoiError::NoCounterpart)?;
+        task.check()?;
+        let corners = self.triangles.iter().flat_map(|t| mesh.corners_mm(*t));
+        let images = corners.map(|place| plane.mirrored(place));
+        let space = Space::of(images).ok_or(RoiError::NoSelection)?;
+        let other = Neighbourhood::around(mesh, &space.wider(UNEVEN_MM), task)?;
+        let mut normals = vec![[0.0; 3]; other.vertices_mm.len()];
+        for triangle in &other.triangles {
+            let facing = other.facing(*triangle);
+            for vertex in triangle {
+                let normal = &mut normals[*vertex as usize];
+                *normal = plus_scaled(*normal, 1.0, facing);
+            }
+        }
+        let looks_in = plane.mirrored_direction(inward);
+        let vertices = other.vertices_mm.iter().zip(&normals).zip(&other.of_mesh);
+        let found = vertices.filter(|((place, normal), _)| {
+            dot(**normal, looks_in) < 0.0 && area.has(plane.mirrored(**place))
+        });
+        Ok(found.map(|(_, vertex)| *vertex).collect())
+    }
 }
 
 /// An area of the plane across a direction, and a range along it.

@@ -39,6 +39,7 @@ pub(super) struct AfterCareArguments {
 impl AfterCareArguments {
     pub(super) fn settings(&self) -> AfterCare {
         AfterCare {
+            face_outward: false,
             holes: self.fill_holes,
             islands: self.islands.clone(),
             cavities: self.fill_cavities,
@@ -65,11 +66,14 @@ pub(super) struct Repair {
     threads: Option<NonZeroUsize>,
 }
 
-/// Does to a file's mesh what the arguments ask for.
+/// Turns over what faces the wrong way in a file's mesh, and does to it what the arguments ask for.
 pub(super) fn run(arguments: &Repair, task: &Task) -> Result<Answer, Error> {
     bonemesh_mesh::check_target(&arguments.output)?;
     let mesh = read_mesh(&arguments.mesh, task)?;
-    let care = arguments.care.settings();
+    let care = AfterCare {
+        face_outward: true,
+        ..arguments.care.settings()
+    };
     let (mesh, report) = pool(arguments.threads)?.install(|| care_for(mesh, &care, task))?;
     write_mesh(&arguments.output, &mesh, task)?;
     let (vertices, triangles) = (mesh.vertices_mm().len(), mesh.triangles().len());

@@ -145,6 +145,11 @@ const HOLES_SHOWN: usize = 5;
 /// What was done to a finished mesh, a line each.
 pub(super) fn after_care(report: &AfterCareReport) -> String {
     let mut text = String::new();
+    if let Some(turned) = report.turned_triangles.filter(|turned| *turned > 0) {
+        // Writing to a String cannot fail.
+        let turned = counted(turned, "triangle", "triangles");
+        let _ = writeln!(text, "  {turned} turned over to face outward");
+    }
     if let (Some(filled), Some(left)) = (report.filled_holes, report.left_holes) {
         // Writing to a String cannot fail.
         let filled = counted(filled, "hole", "holes");
@@ -270,6 +275,11 @@ fn solid_notes(solid: &SolidReport) -> String {
             solid.closed_gaps,
             ["gap", "gaps"],
             "in the selection closed",
+        ),
+        (
+            solid.turned_triangles,
+            ["triangle", "triangles"],
+            "of the mesh turned over first",
         ),
         (
             solid.filled_holes,

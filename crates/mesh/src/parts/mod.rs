@@ -2,10 +2,14 @@
 //!
 //! 1. `Parts::of`: triangles joined to parts, their volumes, and which part lies in which
 //!    (`inside`).
-//! 2. [`keep_islands`] or [`fill_cavities`] decide which parts go.
+//! 2. [`keep_islands`] or [`fill_cavities`] decide which parts go, [`face_outward`] which are turned over.
 
+mod agree;
 mod inside;
 mod label;
+mod outward;
+
+pub use outward::{FacedOutward, face_outward};
 
 use bonemesh_task::Task;
 

@@ -27,6 +27,7 @@ __all__ = [
     "canny",
     "check",
     "decimate",
+    "face_outward",
     "fill_cavities",
     "fill_holes",
     "find_series",
@@ -486,6 +487,12 @@ def check(
     progress: _Progress | None = None,
     cancel: Cancel | None = None,
 ) -> dict[str, Any]: ...
+def face_outward(
+    mesh: Mesh,
+    *,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Mesh: ...
 def fill_holes(
     mesh: Mesh,
     *,

@@ -10,19 +10,28 @@ pub(crate) const STEP_MM: f64 = 0.25;
 
 /// The surface of a body given by how far (mm) places are inside of it, in a box around the origin.
 pub(crate) fn body(half_mm: [f64; 3], inside: impl Fn([f64; 3]) -> f64) -> TriangleMesh {
-    let shape = half_mm.map(|half| (2.0 * half / STEP_MM) as usize + 3);
-    let first = half_mm.map(|half| -half - STEP_MM * 0.73);
+    body_of_edges(STEP_MM, half_mm, inside)
+}
+
+/// The same with edges of about that length.
+pub(crate) fn body_of_edges(
+    step_mm: f64,
+    half_mm: [f64; 3],
+    inside: impl Fn([f64; 3]) -> f64,
+) -> TriangleMesh {
+    let shape = half_mm.map(|half| (2.0 * half / step_mm) as usize + 3);
+    let first = half_mm.map(|half| -half - step_mm * 0.73);
     let [i, j, k] = shape;
     let mut values = Vec::new();
     for node in 0..i * j * k {
         let at = [node % i, node / i % j, node / i / j];
-        let place = [0, 1, 2].map(|axis| first[axis] + STEP_MM * at[axis] as f64);
+        let place = [0, 1, 2].map(|axis| first[axis] + step_mm * at[axis] as f64);
         values.push(inside(place) as f32);
     }
     let affine = Affine::from_axes(
-        [STEP_MM, 0.0, 0.0],
-        [0.0, STEP_MM, 0.0],
-        [0.0, 0.0, STEP_MM],
+        [step_mm, 0.0, 0.0],
+        [0.0, step_mm, 0.0],
+        [0.0, 0.0, step_mm],
         first,
     );
     let task = Task::default();

@@ -111,3 +111,31 @@ fn the_healthy_side_of_a_selection_around_a_defect_has_what_the_defect_lacks() {
     let none = counterpart(&head, &around, &far, &Task::default());
     assert!(matches!(none, Err(RoiError::NoCounterpart)));
 }
+
+#[test]
+fn pieces_that_face_other_ways_have_counterparts_of_their_own() {
+    let ball = body([11.0; 3], |p| 10.0 - length(p));
+    let left = |[x, y, z]: [f64; 3]| x > 0.0 && (y - 3.0).hypot(z) < 3.0;
+    let top = |[x, y, z]: [f64; 3]| z > 0.0 && (x - 4.0).hypot(y) < 2.0;
+    let plane = Plane::new([1.0, 0.0, 0.0], 0.0).unwrap();
+    let opposite =
+        |selection: &[u32]| counterpart(&ball, selection, &plane, &Task::default()).unwrap();
+    let mut apart = [
+        opposite(&selected(&ball, left)),
+        opposite(&selected(&ball, top)),
+    ]
+    .concat();
+    apart.sort_unstable();
+    let both = opposite(&selected(&ball, |p| left(p) || top(p)));
+    assert_eq!(both, apart);
+    let mirrored = |[x, y, z]: [f64; 3]| [-x, y, z];
+    // Gaps of the area are closed up to half a cell beyond the selection.
+    for vertex in both {
+        let place = mirrored(ball.vertices_mm()[vertex as usize]);
+        let [x, y, z] = place;
+        assert!(
+            (y - 3.0).hypot(z) < 4.0 || (x - 4.0).hypot(y) < 3.0,
+            "{place:?}"
+        );
+    }
+}

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use bonemesh_mesh::TriangleMesh;
 
-use crate::bodies::{STEP_MM, body, length, selected, shell, solid, volume_mm3};
+use crate::bodies::{STEP_MM, body, body_of_edges, length, selected, shell, solid, volume_mm3};
 
 #[test]
 fn a_cap_of_a_shell_has_the_volume_of_the_cone_for_any_thickness() {
@@ -36,6 +36,39 @@ fn a_cap_of_a_shell_has_the_volume_of_the_cone_for_any_thickness() {
                 beyond_mm < most_mm,
                 "{thickness} mm: {beyond_mm} at {radius}"
             );
+        }
+    }
+}
+
+#[test]
+fn outline_sides_and_back_lie_within_a_tenth_of_a_millimetre() {
+    let shell = body_of_edges(0.12, [8.5; 3], |p| (8.0 - length(p)).min(length(p) - 5.0));
+    let half_angle = 0.5_f64;
+    let along = |[x, y, z]: [f64; 3]| (2.0 * x - y + 3.0 * z) / 14.0_f64.sqrt();
+    let is_in = |p: [f64; 3]| length(p) > 6.5 && along(p) > length(p) * half_angle.cos();
+    let patch = selected(&shell, is_in);
+    for thickness in [2.0_f64, 4.0] {
+        let inner = 8.0_f64 - thickness.min(3.0);
+        let solid = solid(&shell, &patch, thickness);
+        let beside = |p: [f64; 3]| ((along(p) / length(p)).acos() - half_angle) * length(p);
+        let places = solid.mesh.vertices_mm().iter();
+        let at_sides: Vec<f64> = places
+            .clone()
+            .filter(|p| (inner + 0.3..7.9).contains(&length(**p)))
+            .map(|p| beside(*p))
+            .collect();
+        assert!(at_sides.len() > 100);
+        let farthest = at_sides.iter().fold(0.0_f64, |most, d| most.max(d.abs()));
+        assert!(farthest < 0.1, "{thickness} mm: sides {farthest} mm off");
+        for place in places {
+            let radius = length(*place);
+            assert!((inner - 0.1..8.1).contains(&radius), "{radius}");
+            assert!(beside(*place) < 0.1, "{} at {radius}", beside(*place));
+            // Well inside of the outline there is only front and back.
+            if beside(*place) < -0.2 {
+                let off = (radius - 8.0).abs().min((radius - inner).abs());
+                assert!(off < 0.1, "{off} at {radius}");
+            }
         }
     }
 }
