@@ -90,6 +90,8 @@ def add_region(
     """
     placed = add_object(context, name, region, "Bonemesh Region", REGION_COLOUR)
     placed.matrix_world = source.world_from_patient @ placed.matrix_world
+    # Its front is the bone's own surface: without this, which of the two is drawn is up to chance.
+    placed.show_in_front = True
     link(context, placed, regions(context))
     for key in ("bonemesh_threshold_hu", "bonemesh_series_uid", "bonemesh_spacing_mm"):
         if key in source.properties:

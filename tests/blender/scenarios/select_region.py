@@ -85,6 +85,7 @@ def main(zip: str, out: str, ct: str, fields: dict[str, Any]) -> dict[str, Any]:
         "before": before,
         "region": stage.save_mesh(folder / "region.npz", region),
         "properties": stage.custom_properties(region),
+        "in_front": region.show_in_front,
         "in_scene": region.name in bpy.context.scene.objects,
     }
     # The user goes on: another lasso, another region.
