@@ -109,14 +109,14 @@ def topology(mesh: bonemesh.Mesh) -> dict[str, Any]:
     """What `bonemesh check` counts."""
     said = bonemesh.check(mesh)
     names = [
-        "open_edges",
+        "boundary_edges",
         "non_manifold_edges",
         "non_manifold_vertices",
         "self_intersections",
         "components",
         "printable",
     ]
-    return {name: said[name] for name in names if name in said}
+    return {name: said[name] for name in names}
 
 
 def crease_mm(slice_mm: float) -> float:

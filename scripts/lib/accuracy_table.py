@@ -15,7 +15,7 @@ BARS: dict[str, tuple[float, str, Callable[[Row], float]]] = {
     "volume": (1.0, "%", lambda r: 100.0 * abs(r["volume"])),
 }
 FAULTS = {
-    "open_edges": "open",
+    "boundary_edges": "open",
     "non_manifold_edges": "non-manifold edges",
     "non_manifold_vertices": "non-manifold vertices",
     "self_intersections": "self-intersections",

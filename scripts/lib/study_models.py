@@ -89,8 +89,8 @@ def table_3_2() -> Table:
         rows,
         "A mesh through the centres of n slices is one slice short and one pixel narrow: 0.99 cubed of a cube of 100. "
         "The thesis's meshes lack the slice but not the pixel, since its squares are drawn with one more. "
-        "The thesis prints 21.73 for the cube with a hole; three quarters of the cube are 32.59. Its mesh lost another "
-        "9 per cent there because a drawn hole grows by the pixel. The surface around the voxels has the volume.",
+        "The thesis prints 21.73 for the cube with a hole; three quarters of the cube are 32.59, and why its mesh has less "
+        "its text does not say. The surface around the voxels has the volume in every case.",
     )
 
 
@@ -123,7 +123,7 @@ def table_similarity() -> Table:
 def state(mesh: bonemesh.Mesh) -> str:
     """What a mesh is, in a few words."""
     report = bonemesh.check(mesh)
-    kind = "closed" if report["watertight"] else f"{report['open_edges']:,} open edges"
+    kind = "closed" if report["watertight"] else f"{report['boundary_edges']:,} open edges"
     parts = report["components"]
     return f"{kind}, {parts:,} {'part' if parts == 1 else 'parts'}"
 
