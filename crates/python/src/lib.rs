@@ -22,6 +22,7 @@ mod mesh;
 mod mirror;
 mod options;
 mod phantom;
+mod preview;
 mod region;
 mod render;
 mod report;
@@ -59,6 +60,8 @@ mod _native {
     use crate::mirror::{mirror, symmetry_plane};
     #[pymodule_export]
     use crate::phantom::{phantom, write_phantom};
+    #[pymodule_export]
+    use crate::preview::Preview;
     #[pymodule_export]
     use crate::region::{local_thickness, select_roi};
     #[pymodule_export]

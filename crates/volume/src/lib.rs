@@ -9,6 +9,8 @@
 //!
 //! [`Histogram`] counts how often each value occurs, padding apart.
 //!
+//! [`Volume::coarsened`] takes voxels together for a quick look, and keeps thin bone.
+//!
 //! Limits: slices are parallel and evenly spaced; readers resample what is not. Shear (gantry
 //! tilt), oblique planes, unequal spacings and left-handed index orders are all ordinary affines.
 //!
@@ -24,6 +26,7 @@
 //! ```
 
 mod affine;
+mod coarse;
 mod crop;
 mod geometry;
 mod histogram;

@@ -19,6 +19,7 @@ __all__ = [
     "Mesh",
     "MeshError",
     "PhantomSurface",
+    "Preview",
     "Scan",
     "Series",
     "Volume",
@@ -232,6 +233,36 @@ class Mesh:
         progress: _Progress | None = None,
         cancel: Cancel | None = None,
     ) -> None: ...
+
+# Coarse surfaces of one scan at any threshold: made once, then quick. Thin bone stays and is shown up
+# to half a coarse voxel thicker on each side.
+@final
+class Preview:
+    def __new__(
+        cls,
+        volume: Volume,
+        *,
+        threads: SupportsIndex | None = None,
+        progress: _Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> Preview: ...
+    # Slices, rows, columns of the whole scan.
+    @property
+    def shape(self) -> tuple[int, int, int]: ...
+    # (4, 4): (column, row, slice, 1) of the whole scan to patient millimetres.
+    @property
+    def patient_from_voxel(self) -> npt.NDArray[np.float64]: ...
+    # Patient millimetres; `report` has threshold_hu, spacing_mm of the coarse voxels, vertices,
+    # triangles, seconds.
+    def surface(
+        self,
+        threshold_hu: float,
+        *,
+        crop: _Crop | None = None,
+        threads: SupportsIndex | None = None,
+        progress: _Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> Mesh: ...
 
 @final
 class PhantomSurface:
