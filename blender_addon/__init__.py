@@ -8,11 +8,12 @@ def register() -> None:
     """Called by Blender when the add-on is enabled."""
     problem = library.problem()
     if problem is None:
-        from . import operators, panels, properties, region_properties
+        from . import operators, panels, previewing, properties, region_properties
 
         properties.register()
         region_properties.register()
         operators.register()
+        previewing.register()
         panels.register()
     else:
         from . import panel_without_library
@@ -27,9 +28,10 @@ def unregister() -> None:
     if panel_without_library.is_registered():
         panel_without_library.unregister()
     else:
-        from . import operators, panels, properties, region_properties
+        from . import operators, panels, previewing, properties, region_properties
 
         panels.unregister()
+        previewing.unregister()
         operators.unregister()
         region_properties.unregister()
         properties.unregister()

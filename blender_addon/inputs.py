@@ -18,6 +18,10 @@ METHODS_OF_VOXELS = ("isosurface", "labelled")
 NO_CT_IMAGES = (
     "no folder of CT images is chosen; press Select File Directory of CT Images"
 )
+NO_MESH_FOLDER = (
+    "no folder for the meshes is chosen; press Select File Location to Save Mesh"
+)
+EMPTY_NAME = "{} is empty; give the mesh a name"
 
 
 class RefusalError(Exception):
@@ -183,10 +187,7 @@ def existing_directory(path: str, missing: str) -> Path:
 
 def output_directory(path: str) -> Path:
     """`path` as a folder that exists and can be written to."""
-    directory = existing_directory(
-        path,
-        missing="no folder for the meshes is chosen; press Select File Location to Save Mesh",
-    )
+    directory = existing_directory(path, missing=NO_MESH_FOLDER)
     if not os.access(directory, os.W_OK | os.X_OK):
         raise RefusalError(f"{path} cannot be written to; choose another folder")
     return directory
@@ -202,7 +203,7 @@ def file_stem(name: str, label: str) -> str:
     """`name` as the name of one file inside its folder, on every system, without its suffix."""
     stem = without_suffix(name)
     if not stem:
-        raise RefusalError(f"{label} is empty; give the mesh a name")
+        raise RefusalError(EMPTY_NAME.format(label))
     if NOT_IN_NAMES.search(stem) or stem.startswith(".") or stem.endswith("."):
         raise RefusalError(
             f'{label} "{stem}" is no plain file name; use no folders, no leading or final dot and none of / \\ : * ? " < > |'

@@ -4,10 +4,13 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Mapping
 from typing import Generic, NamedTuple, TypeVar
 
 import bonemesh
+
+from .timeline import Timeline, left_text
 
 T = TypeVar("T")
 
@@ -17,7 +20,8 @@ class BusyError(Exception):
 
 
 class Progress(NamedTuple):
-    """How far a job is: the stage's name and the done part of that stage, 0 to 1."""
+    """How far a job is: the stage's name and the done part, 0 to 1, of the whole where the stages'
+    weights are known and else of that stage."""
 
     stage: str
     fraction: float
@@ -29,8 +33,16 @@ class Job(Generic[T]):
     The work must not touch Blender's data: it may run beside the main thread.
     """
 
-    def __init__(self, title: str, work: Callable[[Job[T]], T]) -> None:
+    def __init__(
+        self,
+        title: str,
+        work: Callable[[Job[T]], T],
+        weights: Mapping[str, float] | None = None,
+    ) -> None:
+        """`weights`: of the stages in their order, where the usual part of the time is known."""
         self.title = title
+        self._timeline = Timeline(weights) if weights else None
+        self._begin_s = time.monotonic()
         self.cancel_token = bonemesh.Cancel()
         self.cancel_requested = False
         self.progress = Progress("starting", 0.0)
@@ -48,6 +60,7 @@ class Job(Generic[T]):
         global _current
         refuse_while_running()
         _current = self
+        self._begin_s = time.monotonic()
         self._thread.start()
 
     def start_beside(self) -> None:
@@ -59,8 +72,18 @@ class Job(Generic[T]):
         refuse_while_running()
         return self._work(self)
 
+    @property
+    def time_left(self) -> str:
+        """In round numbers; empty where it is not known."""
+        if self._timeline is None:
+            return ""
+        elapsed_s = time.monotonic() - self._begin_s
+        return left_text(self._timeline.seconds_left(elapsed_s))
+
     def note_progress(self, stage: str, fraction: float) -> None:
         """Called by the library on the thread that does the work."""
+        if self._timeline is not None:
+            fraction = self._timeline.done(stage, fraction)
         self.progress = Progress(stage, fraction)
         if self.on_progress is not None:
             self.on_progress(self.progress)

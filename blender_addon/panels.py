@@ -6,7 +6,14 @@ from typing import ClassVar
 import bpy
 from bpy.types import Context, Panel, UILayout
 
-from . import contents_box, job, mesh_box
+from . import (
+    contents_box,
+    job,
+    memory_box,
+    mesh_box,
+    next_step_box,
+    threshold_box,
+)
 from .inputs import uses_edge_points
 from .operators.cancel import BONEMESH_OT_cancel
 from .operators.check_mesh import BONEMESH_OT_check_mesh
@@ -15,9 +22,12 @@ from .operators.choose_mesh_directory import BONEMESH_OT_choose_mesh_directory
 from .operators.measure_thickness import BONEMESH_OT_measure_thickness
 from .operators.mirror_roi import BONEMESH_OT_mirror_roi
 from .operators.plane_from_vertices import BONEMESH_OT_plane_from_vertices
+from .operators.remove_crop_box import BONEMESH_OT_remove_crop_box
 from .operators.render_surface_mesh import BONEMESH_OT_render_surface_mesh
 from .operators.resume_roi import BONEMESH_OT_resume_roi
 from .operators.select_roi import BONEMESH_OT_select_roi
+from .operators.show_crop_box import BONEMESH_OT_show_crop_box
+from .operators.use_crop_box import BONEMESH_OT_use_crop_box
 
 
 class BONEMESH_PT_segment_ct(Panel):
@@ -33,11 +43,13 @@ class BONEMESH_PT_segment_ct(Panel):
         properties = context.scene.bonemesh
         layout = self.layout
 
+        next_step_box.draw(layout, context)
         column = layout.column()
         column.operator(BONEMESH_OT_choose_ct_directory.bl_idname)
         column.prop(properties, "ct_directory", text="")
         contents_box.draw(column, context)
         column.prop(properties, "hu_threshold", slider=True)
+        threshold_box.draw(column, context)
         column.prop(properties, "cut_thickness")
 
         column = layout.column()
@@ -45,6 +57,7 @@ class BONEMESH_PT_segment_ct(Panel):
         column.prop(properties, "mesh_name", text="")
         column.operator(BONEMESH_OT_choose_mesh_directory.bl_idname)
         column.prop(properties, "mesh_directory", text="")
+        memory_box.draw(column, context)
         column.operator(BONEMESH_OT_render_surface_mesh.bl_idname)
 
         column = layout.column()
@@ -64,8 +77,9 @@ class BONEMESH_PT_segment_ct(Panel):
 def draw_progress(layout: UILayout, running: job.Job) -> None:
     """Draws how far the running job is and the button that stops it."""
     stage, fraction = running.progress
+    left = running.time_left
     column = layout.column()
-    column.label(text=running.title)
+    column.label(text=f"{running.title}: {left}" if left else running.title)
     column.progress(factor=fraction, text=stage.capitalize(), type="BAR")
     column.operator(BONEMESH_OT_cancel.bl_idname, icon="X")
 
@@ -89,6 +103,20 @@ class Part:
     def draw_fields(self, context: Context, layout: UILayout) -> None:
         """Draws the fields."""
         raise NotImplementedError
+
+
+class BONEMESH_PT_crop(Part, Panel):
+    """Which part of the images is rendered, as a box in the 3D view."""
+
+    bl_label = "Crop"
+
+    def draw_fields(self, context: Context, layout: UILayout) -> None:
+        """Draws the field and what moves the box."""
+        column = layout.column()
+        column.prop(context.scene.bonemesh, "crop")
+        column.operator(BONEMESH_OT_show_crop_box.bl_idname, icon="MESH_CUBE")
+        column.operator(BONEMESH_OT_use_crop_box.bl_idname)
+        column.operator(BONEMESH_OT_remove_crop_box.bl_idname)
 
 
 class BONEMESH_PT_region(Part, Panel):
@@ -162,7 +190,6 @@ class BONEMESH_PT_advanced(Part, Panel):
         column = layout.column()
         column.prop(properties, "series")
         column.prop(properties, "one_series")
-        column.prop(properties, "crop")
         column.prop(properties, "damp_metal")
         column.prop(properties, "method")
         table = column.row()
@@ -180,6 +207,7 @@ class BONEMESH_PT_advanced(Part, Panel):
 
 CLASSES = (
     BONEMESH_PT_segment_ct,
+    BONEMESH_PT_crop,
     BONEMESH_PT_region,
     BONEMESH_PT_after_care,
     BONEMESH_PT_advanced,

@@ -12,7 +12,7 @@ from bpy.props import (
 )
 from bpy.types import Context, PropertyGroup
 
-from . import scanning
+from . import previewing, scanning
 
 METHODS = [
     (
@@ -100,6 +100,17 @@ def ct_images_changed(self: "BonemeshProperties", _context: Context) -> None:
     self.series_source = source
     if scanning.is_watched:
         scanning.begin(self)
+    previewing.choose(images=True)
+
+
+def series_changed(_self: "BonemeshProperties", _context: Context) -> None:
+    """Shows the other series."""
+    previewing.choose(images=True)
+
+
+def preview_changed(_self: "BonemeshProperties", _context: Context) -> None:
+    """Shows what the preview is now."""
+    previewing.choose()
 
 
 class BonemeshProperties(PropertyGroup):
@@ -122,6 +133,13 @@ class BonemeshProperties(PropertyGroup):
         default=350,
         min=-1024,
         max=3071,
+        update=preview_changed,
+    )
+    show_preview: BoolProperty(
+        name="Live Preview",
+        description="Shows a coarse surface at the threshold in the 3D view, at once and up to a voxel too thick, until the surface itself is made",
+        default=True,
+        update=preview_changed,
     )
     cut_thickness: FloatProperty(
         name="Thickness of Cut (mm)",
@@ -247,6 +265,7 @@ class BonemeshProperties(PropertyGroup):
     series: StringProperty(
         name="Series",
         description="Number or UID of the series, where the folder holds several; empty takes the one that is marked",
+        update=series_changed,
     )
     series_source: StringProperty(
         description="What `series` was chosen from", options={"HIDDEN"}
@@ -259,6 +278,7 @@ class BonemeshProperties(PropertyGroup):
     crop: StringProperty(
         name="Crop",
         description="Part of the images to use, as columns, rows, slices counted from 0, ends excluded: 0:255,0:345,2:90; empty uses all",
+        update=preview_changed,
     )
     center_in_world: BoolProperty(
         name="Center in World",

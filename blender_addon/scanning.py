@@ -12,6 +12,7 @@ from __future__ import annotations
 import logging
 from typing import Any
 
+import bonemesh
 import bpy
 
 from . import scans, window
@@ -54,6 +55,13 @@ def marked_choice(properties: Any) -> int | str | None:
     request = request_of(properties)
     scan = None if request is None else scans.known(request)
     return None if scan is None else scan.choice(properties.series)
+
+
+def marked_series(properties: Any) -> bonemesh.Series | None:
+    """What is known of the series that the panel marks, once the scan has ended."""
+    request = request_of(properties)
+    scan = None if request is None else scans.known(request)
+    return None if scan is None else scan.chosen(properties.series)
 
 
 def stop() -> None:

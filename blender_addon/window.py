@@ -12,6 +12,9 @@ from mathutils import Vector
 
 from .job import Progress
 
+# From so many diagonals away the usual lens sees all of a box.
+FRAMED_DIAGONALS = 1.3
+
 
 def views(context: Any) -> Iterator[tuple[Any, Any]]:
     """Every 3D view that is open, with its window."""
@@ -56,6 +59,17 @@ def frame_selected(context: Any) -> None:
         if region is not None:
             with context.temp_override(window=window, area=area, region=region):
                 bpy.ops.view3d.view_selected()
+
+
+def frame_box(context: Any, lowest: Any, highest: Any) -> None:
+    """Turns every 3D view of the current window to a box of the world, which no object need fill."""
+    middle = (Vector(lowest) + Vector(highest)) / 2.0
+    diagonal = (Vector(highest) - Vector(lowest)).length
+    for window, area in views(context):
+        if window == context.window:
+            region_3d = area.spaces.active.region_3d
+            region_3d.view_location = middle
+            region_3d.view_distance = FRAMED_DIAGONALS * diagonal
 
 
 class CursorProgress:

@@ -5,7 +5,7 @@ import atexit
 
 import bpy
 
-from .. import scanning
+from .. import previewing, scanning
 from . import background
 from .cancel import BONEMESH_OT_cancel
 from .check_mesh import BONEMESH_OT_check_mesh
@@ -15,19 +15,29 @@ from .choose_series import BONEMESH_OT_choose_series
 from .measure_thickness import BONEMESH_OT_measure_thickness
 from .mirror_roi import BONEMESH_OT_mirror_roi
 from .plane_from_vertices import BONEMESH_OT_plane_from_vertices
+from .remove_crop_box import BONEMESH_OT_remove_crop_box
 from .render_surface_mesh import BONEMESH_OT_render_surface_mesh
 from .resume_roi import BONEMESH_OT_resume_roi
 from .scan_ct_directory import BONEMESH_OT_scan_ct_directory
 from .select_roi import BONEMESH_OT_select_roi
+from .show_crop_box import BONEMESH_OT_show_crop_box
+from .start_lasso import BONEMESH_OT_start_lasso
 from .stop_scan import BONEMESH_OT_stop_scan
+from .use_crop_box import BONEMESH_OT_use_crop_box
+from .use_threshold import BONEMESH_OT_use_threshold
 
 CLASSES = (
     BONEMESH_OT_choose_ct_directory,
     BONEMESH_OT_choose_series,
     BONEMESH_OT_scan_ct_directory,
     BONEMESH_OT_stop_scan,
+    BONEMESH_OT_use_threshold,
+    BONEMESH_OT_show_crop_box,
+    BONEMESH_OT_use_crop_box,
+    BONEMESH_OT_remove_crop_box,
     BONEMESH_OT_choose_mesh_directory,
     BONEMESH_OT_render_surface_mesh,
+    BONEMESH_OT_start_lasso,
     BONEMESH_OT_select_roi,
     BONEMESH_OT_mirror_roi,
     BONEMESH_OT_resume_roi,
@@ -42,6 +52,7 @@ def stop_jobs() -> None:
     """Ends what runs, and its timers: nothing of it may outlive the operators or Blender."""
     background.stop_all(bpy.context)
     scanning.stop()
+    previewing.stop()
 
 
 def register() -> None:

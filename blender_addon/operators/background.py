@@ -13,10 +13,11 @@ from typing import Any
 
 import bonemesh
 
-from .. import window
-from ..job import Job, Progress, refuse_while_running
+from .. import last_messages, window
+from ..job import BusyError, Job, refuse_while_running
 from ..job import stop as stop_job
 from ..messages import EXPECTED, one_line
+from .step import Step
 
 TICK_S = 0.1
 PATIENCE_S = (
@@ -56,11 +57,20 @@ def stop_all(context: Any) -> None:
         watch.close(context)
 
 
-class BackgroundOperator:
+class BackgroundOperator(Step):
     """Mixed into an operator that has `prepare` and `finish`."""
 
     is_pressed = False
     """Whether a button in a window began it, so that the user sees the panel."""
+
+    @classmethod
+    def missing(cls, context: Any) -> str | None:
+        """Needs the job before it to have ended."""
+        try:
+            refuse_while_running()
+        except BusyError as busy:
+            return str(busy)
+        return super().missing(context)
 
     def prepare(self, context: Any) -> Job:
         """Checks the request, reads what is needed from Blender and says what is to be calculated."""
@@ -74,6 +84,7 @@ class BackgroundOperator:
         """Does everything before it returns."""
         try:
             refuse_while_running()
+            last_messages.clear()
             job = self.prepare(context)
             with window.CursorProgress(context) as cursor:
                 job.on_progress = cursor.show
@@ -83,7 +94,7 @@ class BackgroundOperator:
             return self._stopped()
         except EXPECTED as error:
             return self._failed(error)
-        self.report({"INFO"}, message)
+        self.say("INFO", message)
         return {"FINISHED"}
 
     def invoke(self, context: Any, _event: Any) -> set[str]:
@@ -93,13 +104,14 @@ class BackgroundOperator:
         self.is_pressed = True
         try:
             refuse_while_running()
+            last_messages.clear()
             job = self.prepare(context)
             job.start()
         except EXPECTED as error:
             return self._failed(error)
         self._watch = Watch(job, context)
         context.window_manager.modal_handler_add(self)
-        window.show_status(context, status_text(job.title, job.progress))
+        window.show_status(context, status_text(job))
         window.redraw_views(context)
         return {"RUNNING_MODAL"}
 
@@ -116,7 +128,7 @@ class BackgroundOperator:
         """Shows how far the job is or, after its end, takes its result."""
         job = self._watch.job
         if job.is_running():
-            window.show_status(context, status_text(job.title, job.progress))
+            window.show_status(context, status_text(job))
             window.redraw_views(context)
             return {"PASS_THROUGH"}
         self._watch.close(context)
@@ -128,7 +140,7 @@ class BackgroundOperator:
             if not isinstance(error, EXPECTED):
                 log.exception("Bonemesh: %s ended unexpectedly", job.title)
             return self._failed(error)
-        self.report({"INFO"}, message)
+        self.say("INFO", message)
         return {"FINISHED"}
 
     def cancel(self, context: Any) -> None:
@@ -136,15 +148,21 @@ class BackgroundOperator:
         self._watch.job.cancel()
         self._watch.close(context)
 
+    def say(self, kind: str, text: str) -> None:
+        """Reports, and keeps for the panel."""
+        last_messages.say(kind, text)
+        self.report({kind}, text)
+
     def _stopped(self) -> set[str]:
-        self.report({"INFO"}, "Stopped; nothing was kept")
+        self.say("INFO", "Stopped; nothing was kept")
         return {"CANCELLED"}
 
     def _failed(self, error: BaseException) -> set[str]:
-        self.report({"ERROR"}, one_line(error))
+        self.say("ERROR", one_line(error))
         return {"CANCELLED"}
 
 
-def status_text(title: str, progress: Progress) -> str:
+def status_text(job: Job) -> str:
     """One line for the status bar."""
-    return f"{title}: {progress.stage} {progress.fraction:.0%}   (Esc cancels)"
+    left = f", {job.time_left}" if job.time_left else ""
+    return f"{job.title}: {job.progress.stage} {job.progress.fraction:.0%}{left}   (Esc cancels)"

@@ -9,10 +9,10 @@ from bpy.types import Context, Operator
 from .. import selection
 from ..job import Job
 from .background import BackgroundOperator
-from .on_mesh import OnMesh
+from .on_mesh import OnSelection
 
 
-class BONEMESH_OT_measure_thickness(OnMesh, BackgroundOperator, Operator):
+class BONEMESH_OT_measure_thickness(OnSelection, BackgroundOperator, Operator):
     """Measure how thick the bone is under the selected vertices; nothing is changed"""
 
     bl_idname = "bonemesh.measure_thickness"

@@ -3,18 +3,32 @@
 
 from bpy.types import Context
 
+from .. import scene_crop, steps
+from .step import Step
 
-class OnMesh:
+
+class OnMesh(Step):
     """Mixed into an operator that works on the active object's mesh."""
 
     remedy = "Make a mesh object active and select vertices of it in Edit Mode"
     """What is said where there is none."""
 
     @classmethod
-    def poll(cls, context: Context) -> bool:
+    def missing(cls, context: Context) -> str | None:
         """Needs a mesh."""
         active = context.active_object
-        if active is None or active.type != "MESH":
-            cls.poll_message_set(cls.remedy)
-            return False
-        return True
+        is_mesh = active is not None and active.type == "MESH"
+        if not is_mesh or scene_crop.TAG in active:
+            return cls.remedy
+        return super().missing(context)
+
+
+class OnSelection(OnMesh):
+    """Mixed into an operator that works on the selected vertices of the active object's mesh."""
+
+    @classmethod
+    def missing(cls, context: Context) -> str | None:
+        """Needs a selection."""
+        return super().missing(context) or steps.missing_selection(
+            context.active_object
+        )

@@ -9,13 +9,13 @@ from bpy.types import Context, Operator
 from .. import selection
 from ..inputs import RefusalError
 from ..messages import one_line
-from .on_mesh import OnMesh
+from .on_mesh import OnSelection
 
 # Of the square of the longest side: three places nearer to a line than that make no plane.
 LEAST_AREA = 1e-6
 
 
-class BONEMESH_OT_plane_from_vertices(OnMesh, Operator):
+class BONEMESH_OT_plane_from_vertices(OnSelection, Operator):
     """Take the plane through the three selected vertices, such as points on the midline, as the mirror plane"""
 
     bl_idname = "bonemesh.plane_from_vertices"

@@ -7,7 +7,17 @@ import bonemesh
 import bpy
 from bpy.types import Context, Operator
 
-from .. import scanning, scene, window
+from .. import (
+    cropping,
+    memory_box,
+    previewing,
+    scanning,
+    scene,
+    scene_crop,
+    stages,
+    steps,
+    window,
+)
 from ..inputs import RenderInputs
 from ..job import Job
 from .background import BackgroundOperator
@@ -20,10 +30,22 @@ class BONEMESH_OT_render_surface_mesh(BackgroundOperator, Operator):
     bl_label = "Render Surface Mesh"
     bl_options: ClassVar[set[str]] = {"UNDO"}
 
+    @classmethod
+    def missing(cls, context: Context) -> str | None:
+        """Needs images, a name and a folder."""
+        return super().missing(context) or steps.missing_for_surface(
+            context.scene.bonemesh
+        )
+
     def prepare(self, context: Context) -> Job[bonemesh.Mesh]:
         """Checks the panel's fields."""
         properties = context.scene.bonemesh
+        if scene_crop.found(context.scene) is not None:
+            cropping.use_box(context)
         self._inputs = inputs = RenderInputs.read(properties, bpy.path.abspath)
+        short = memory_box.warning(properties)
+        if short is not None:
+            self.say("WARNING", short)
         self._center_in_world = properties.center_in_world
         options = dict(inputs.options)
         if self.is_pressed:
@@ -43,10 +65,11 @@ class BONEMESH_OT_render_surface_mesh(BackgroundOperator, Operator):
             )
             return mesh
 
-        return Job("Render Surface Mesh", work)
+        return Job("Render Surface Mesh", work, stages.of_rendering(inputs.options))
 
     def finish(self, context: Context, result: bonemesh.Mesh) -> str:
         """Adds the mesh to the scene, selected and in view."""
+        previewing.dismiss()
         scene.use_millimetres(context)
         bone = scene.add_bone(
             context, self._inputs.name, result, in_world_centre=self._center_in_world
@@ -54,5 +77,5 @@ class BONEMESH_OT_render_surface_mesh(BackgroundOperator, Operator):
         if scene.select_only(context, bone):
             window.frame_selected(context)
         for warning in result.report["warnings"]:
-            self.report({"WARNING"}, warning)
+            self.say("WARNING", warning)
         return f"{self._inputs.output}: {len(result.triangles):,} triangles"

@@ -6,7 +6,7 @@ from typing import ClassVar
 import bonemesh
 from bpy.types import Context, Event, Operator
 
-from .. import scanning, scans, window
+from .. import previewing, scanning, scans, window
 from ..inputs import NO_CT_IMAGES
 from ..messages import EXPECTED, one_line
 from ..scans import FolderScan
@@ -37,6 +37,7 @@ class BONEMESH_OT_scan_ct_directory(Operator):
             return {"CANCELLED"}
         finally:
             scans.keep(scan)
+            previewing.look_again(context.scene.bonemesh)
             window.redraw_views(context)
         self.report({"INFO"}, f"{request.path}: {len(contents.series)} series")
         return {"FINISHED"}
@@ -47,6 +48,7 @@ class BONEMESH_OT_scan_ct_directory(Operator):
             return self.execute(context)
         if scanning.begin(context.scene.bonemesh) is None:
             return self._nothing_chosen()
+        previewing.look_again(context.scene.bonemesh)
         return {"FINISHED"}
 
     def _nothing_chosen(self) -> set[str]:

@@ -7,18 +7,25 @@ import bonemesh
 import bpy
 from bpy.types import Context, Operator
 
-from .. import scene, selection, window
+from .. import scene, selection, steps, window
 from ..findings import counted
 from ..inputs import RegionInputs, region_options
 from ..job import Job
 from .background import BackgroundOperator
-from .on_mesh import OnMesh
+from .on_mesh import OnSelection
 
 
-class RegionOperator(OnMesh, BackgroundOperator):
+class RegionOperator(OnSelection, BackgroundOperator):
     """What Select Region of Interest and its mirrored sister share."""
 
     title = ""
+
+    @classmethod
+    def missing(cls, context: Context) -> str | None:
+        """Needs a name and a folder, too."""
+        return super().missing(context) or steps.missing_for_region(
+            context.scene.bonemesh
+        )
 
     def mirror_options(self, _context: Context) -> dict[str, Any]:
         """Keyword arguments of bonemesh.select_roi for the other side."""

@@ -96,6 +96,16 @@ def test_disabling_the_addon_ends_its_job(blender: Blender, ct: Path) -> None:
     assert answer["files"] == []
 
 
+def test_opening_a_file_whose_images_are_gone_ends_the_job(
+    blender: Blender, ct: Path
+) -> None:
+    answer = blender.run("interrupted", ct=ct, how="open")
+    assert "still running" in answer["refused"] or "active" in answer["refused"]
+    assert "moved away does not exist" in answer["again"]
+    assert answer["timers"] == 0
+    assert answer["objects"] == answer["files"] == []
+
+
 def test_quitting_during_a_job_is_clean(blender: Blender, ct: Path) -> None:
     answer = blender.run("interrupted", ct=ct, how="quit")
     assert answer["running"] is True

@@ -32,7 +32,6 @@ AFTER_CARE = [
 ADVANCED = [
     "series",
     "one_series",
-    "crop",
     "damp_metal",
     "method",
     "leave_out_table",
@@ -59,9 +58,14 @@ def test_what_the_images_hold_is_shown_below_their_path(panel: dict[str, Any]) -
     assert isinstance(shown[shown.index("[ct_directory]") + 1], list)
 
 
+def test_the_first_line_says_what_to_do_next(panel: dict[str, Any]) -> None:
+    assert panel["main"][0] == ["Press Render Surface Mesh"]
+    assert not isinstance(panel["busy"][0], list)
+
+
 def test_the_fields_are_in_the_published_order(panel: dict[str, Any]) -> None:
     assert without_boxes(panel["main"]) == FIELDS
-    assert panel["tabs"] == ["Segment CT"] * 4
+    assert panel["tabs"] == ["Segment CT"] * 5
 
 
 def test_the_region_is_measured_cut_and_mirrored_from_a_part_of_its_own(
@@ -81,8 +85,19 @@ def test_the_region_is_measured_cut_and_mirrored_from_a_part_of_its_own(
     ]
 
 
+def test_the_crop_box_is_shown_used_and_removed_from_a_part_of_its_own(
+    panel: dict[str, Any],
+) -> None:
+    assert panel["crop"] == [
+        "Crop [crop]",
+        "Show Crop Box",
+        "Use Crop Box",
+        "Remove Crop Box",
+    ]
+
+
 def test_advanced_settings_are_there_but_closed(panel: dict[str, Any]) -> None:
-    assert panel["closed"] == [False, True, True, True]
+    assert panel["closed"] == [False, True, True, True, True]
     assert [text.split("[")[1].rstrip("]") for text in panel["advanced"]] == ADVANCED
 
 

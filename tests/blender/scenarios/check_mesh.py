@@ -12,9 +12,10 @@ from panel import drawn
 
 
 def box() -> list[str]:
-    """What the box of the active mesh shows now; it is the last one."""
-    boxes = [item for item in drawn() if isinstance(item, list)]
-    return boxes[-1] if boxes else []
+    """What the box of the active mesh shows now, below its button."""
+    shown = drawn()
+    below = shown[shown.index("Check Mesh") + 1 :]
+    return next((item for item in below if isinstance(item, list)), [])
 
 
 def cube(name: str, **options: Any) -> Any:

@@ -13,9 +13,9 @@ LONG_AGO = "there/is/nothing/here"
 
 def box(buttons: list[Any] | None = None) -> list[str]:
     """What the box shows now."""
-    boxes = [item for item in drawn(buttons=buttons) if isinstance(item, list)]
-    assert len(boxes) <= 1
-    return boxes[0] if boxes else []
+    shown = drawn(buttons=buttons)
+    below = shown[shown.index("[ct_directory]") + 1]
+    return below if isinstance(below, list) else []
 
 
 def rows() -> list[Any]:

@@ -27,6 +27,27 @@ def open_soon(gate: stage.Gate) -> None:
     timer.start()
 
 
+def opened(ct: str, out: str) -> dict[str, Any]:
+    """Opens a file whose images were moved away while its surface is rendered."""
+    properties = stage.fill_panel(str(Path(out) / "moved away"), out)
+    file = str(Path(out) / "scene.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=file, copy=True)
+    properties.ct_directory = ct
+    operator, context, gate = press("render_surface_mesh", "render")
+    operator.cancel(context)  # as Blender does before it opens another file
+    bpy.ops.wm.open_mainfile(filepath=file)
+    refused = stage.message_of(bpy.ops.bonemesh.check_mesh)
+    gate.open()
+    assert stage.addon_job().stop(60.0)
+    return {
+        "refused": refused,
+        "again": stage.message_of(bpy.ops.bonemesh.render_surface_mesh),
+        "timers": len(stage.addon_watches()),
+        "objects": sorted(o.name for o in bpy.data.objects if "bone" in o.name),
+        "files": sorted(p.name for p in Path(out).glob("*.stl")),
+    }
+
+
 def main(zip: str, out: str, ct: str, how: str) -> dict[str, Any]:
     """Deletes the source, undoes, opens another file, disables the add-on, or quits."""
     stage.install(zip)
@@ -46,6 +67,8 @@ def main(zip: str, out: str, ct: str, how: str) -> dict[str, Any]:
             "timers": len(watches),
             "files": sorted(p.name for p in Path(out).glob("*.stl")),
         }
+    if how == "open":
+        return opened(ct, out)
     bpy.ops.ed.undo_push(message="before")
     bone, operator, context, gate = start_region(ct, out)
     bpy.ops.ed.undo_push(message="after")

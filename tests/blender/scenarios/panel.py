@@ -19,7 +19,7 @@ class Layout:
     def column(self, **_options: Any) -> "Layout":
         return self
 
-    row = split = column
+    row = split = grid_flow = column
 
     def box(self) -> "Layout":
         self.shown.append([])
@@ -50,6 +50,10 @@ class Layout:
         self.buttons.append(SimpleNamespace(idname=name))
         return self.buttons[-1]
 
+    def template_icon(self, icon_value: int, scale: float) -> None:
+        assert scale > 1.0
+        self.shown.append("picture")
+
     def progress(self, factor: float, text: str, **_options: Any) -> None:
         assert 0.0 <= factor <= 1.0
         self.shown.append(f"progress: {text}")
@@ -75,6 +79,7 @@ def main(zip: str, out: str, ct: str) -> dict[str, Any]:
     properties = stage.fill_panel(ct, out)
     panels = [
         bpy.types.BONEMESH_PT_segment_ct,
+        bpy.types.BONEMESH_PT_crop,
         bpy.types.BONEMESH_PT_region,
         bpy.types.BONEMESH_PT_after_care,
         bpy.types.BONEMESH_PT_advanced,
@@ -87,6 +92,7 @@ def main(zip: str, out: str, ct: str) -> dict[str, Any]:
         ],
         "main": drawn("BONEMESH_PT_segment_ct"),
         "advanced": drawn("BONEMESH_PT_advanced"),
+        "crop": drawn("BONEMESH_PT_crop"),
         "methods": [item.identifier for item in methods.enum_items],
         "method": properties.method,
         "region": drawn("BONEMESH_PT_region"),

@@ -97,7 +97,16 @@ def regions(folder: Path) -> dict[str, str]:
     for other in list(bpy.data.objects):
         bpy.data.objects.remove(other)
     answers["no active mesh"] = region()
-    answers["nothing to check"] = stage.message_of(bpy.ops.bonemesh.check_mesh)
+    ops = bpy.ops.bonemesh
+    for case, operator in {
+        "nothing to check": ops.check_mesh,
+        "nothing to mirror": ops.mirror_roi,
+        "nothing to measure": ops.measure_thickness,
+        "nothing for a plane": ops.plane_from_vertices,
+        "nothing for the lasso": ops.start_lasso,
+        "no region to take up": ops.resume_roi,
+    }.items():
+        answers[case] = stage.message_of(operator)
     bpy.context.scene.bonemesh.mesh_name = "bone"
     bpy.ops.bonemesh.render_surface_mesh()
     stage.select_front(bpy.context.view_layer.objects.active)
@@ -109,7 +118,11 @@ def regions(folder: Path) -> dict[str, str]:
     bone = bpy.context.view_layer.objects.active
     select(bone, False)
     answers["no selection"] = region()
+    answers["no selection to measure"] = stage.message_of(ops.measure_thickness)
+    answers |= without_selection()
     select(bone, True)
+    answers["too many for a plane"] = stage.message_of(ops.plane_from_vertices)
+    answers["mirrored without a name"] = mirrored_without_name()
     answers["no region name"] = region(roi_name="")
     answers["region name leaves the folder"] = region(roi_name="../region")
     answers["region name is the mesh's"] = region(roi_name="Bone.stl")
@@ -126,6 +139,32 @@ def regions(folder: Path) -> dict[str, str]:
     bone.data.clear_geometry()
     answers["mesh without vertices"] = region()
     return answers
+
+
+def without_selection() -> dict[str, str]:
+    """What is said in Edit Mode, where nothing is selected."""
+    ops = bpy.ops.bonemesh
+    bpy.ops.object.mode_set(mode="EDIT")
+    answers = {
+        f"{case} in Edit Mode": stage.message_of(operator)
+        for case, operator in {
+            "no selection": ops.select_roi,
+            "no selection to mirror": ops.mirror_roi,
+            "no selection to measure": ops.measure_thickness,
+            "no selection for a plane": ops.plane_from_vertices,
+        }.items()
+    }
+    bpy.ops.object.mode_set(mode="OBJECT")
+    return answers
+
+
+def mirrored_without_name() -> str:
+    """The error of a mirrored region without a name."""
+    properties = bpy.context.scene.bonemesh
+    properties.roi_name = ""
+    message = stage.message_of(bpy.ops.bonemesh.mirror_roi)
+    properties.roi_name = "region"
+    return message
 
 
 def main(zip: str, out: str, ct: str) -> dict[str, Any]:

@@ -187,6 +187,12 @@ def addon_scanning() -> Any:
     return scanning
 
 
+def addon_previewing() -> Any:
+    """The add-on's module of the preview, as it is where there is a window."""
+    addon_scanning()
+    return import_module(f"{MODULE}.previewing")
+
+
 def front(placed: Any) -> Any:
     """Which vertices are on a patch of the tube's outer front; looked at in Object Mode."""
     mesh = placed.data

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Between the crop box in the scene and the field Crop of the panel."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from . import crop_box, scanning, scene_crop
+from .crop_box import Grid
+from .inputs import NO_CT_IMAGES, RefusalError
+
+NO_BOX = "there is no crop box in the scene; press Show Crop Box"
+NOT_SCANNED = "which images are meant is not known yet; wait until they are looked at, or press Look Again"
+
+
+def grid_of(properties: Any) -> Grid:
+    """Where the chosen series lies; refused as long as that is not known."""
+    if not properties.ct_directory.strip():
+        raise RefusalError(NO_CT_IMAGES)
+    series = scanning.marked_series(properties)
+    if series is None:
+        raise RefusalError(NOT_SCANNED)
+    affine = np.asarray(series.patient_from_voxel, dtype=np.float64)
+    return Grid(affine, (series.columns, series.rows, series.slices))
+
+
+def use_box(context: Any) -> str:
+    """Writes what the box in the scene holds into the field Crop, and returns it; empty for all."""
+    properties = context.scene.bonemesh
+    placed = scene_crop.found(context.scene)
+    if placed is None:
+        raise RefusalError(NO_BOX)
+    grid = grid_of(properties)
+    box = crop_box.box_of(scene_crop.corners_mm(context, placed), grid)
+    text = crop_box.written(box, grid)
+    if properties.crop != text:
+        properties.crop = text
+    return text
