@@ -62,7 +62,8 @@ def read(text: str, grid: Grid) -> Box:
     numbers = [int(number) for number in match.groups()]
     ranges = list(zip(numbers[::2], numbers[1::2], strict=True))
     fits = all(
-        first < end <= size for (first, end), size in zip(ranges, grid.shape, strict=True)
+        first < end <= size
+        for (first, end), size in zip(ranges, grid.shape, strict=True)
     )
     return (ranges[0], ranges[1], ranges[2]) if fits else grid.whole
 
@@ -97,7 +98,5 @@ def box_of(corners: NDArray[np.float64], grid: Grid) -> Box:
         raise RefusalError(
             "the crop box holds no voxel of the images; move it back to them or press Show Crop Box"
         )
-    columns, rows, slices = (
-        (int(a), int(b)) for a, b in zip(first, end, strict=True)
-    )
+    columns, rows, slices = ((int(a), int(b)) for a, b in zip(first, end, strict=True))
     return (columns, rows, slices)

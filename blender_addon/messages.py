@@ -12,7 +12,9 @@ EXPECTED = (RefusalError, BusyError, bonemesh.BonemeshError, OSError, MemoryErro
 def one_line(error: BaseException) -> str:
     """What is said of `error`, with its remedy."""
     if isinstance(error, MemoryError):
-        return "not enough memory; crop the images (Crop) or keep fewer points (Advanced)"
+        return (
+            "not enough memory; crop the images (Crop) or keep fewer points (Advanced)"
+        )
     if isinstance(error, OSError) and error.strerror and error.filename:
         return f"{error.filename}: {error.strerror}; check the folder's rights and free space"
     if isinstance(error, EXPECTED):

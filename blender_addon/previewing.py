@@ -15,10 +15,19 @@ from typing import Any
 import bpy
 from bpy.app.handlers import persistent
 
-from . import histogram_icon, last_messages, previews, scanning, scans, scene, scene_preview, window
+from . import (
+    histogram_icon,
+    last_messages,
+    previews,
+    scanning,
+    scans,
+    scene,
+    scene_preview,
+    window,
+)
 from .previews import Reading, SeriesRequest, Surface, Wanted
 
-TICK_S = 0.02
+TICK_S = 0.01
 PATIENCE_S = 5.0  # as for a job
 
 log = logging.getLogger(__name__)
@@ -45,7 +54,24 @@ def choose(*, images: bool = False) -> None:
     if scanning.is_watched:
         state.is_wanted = True
         state.is_framed = state.is_framed and not images
+        ask()
         watch()
+
+
+def ask() -> None:
+    """Asks for the wanted surface at once, where its series was read: `step` would do so a tick later."""
+    properties = bpy.context.scene.bonemesh
+    series = chosen_series(properties)
+    reading = None if series is None else previews.known(series)
+    if reading is not None and reading.preview is not None and properties.show_preview:
+        wanted = wanted_of(properties, series)
+        if previews.worker.asked != wanted:
+            previews.worker.ask(reading.preview, wanted)
+
+
+def wanted_of(properties: Any, series: SeriesRequest) -> Wanted:
+    """The surface of a series at the threshold, in the crop box."""
+    return Wanted(series, properties.hu_threshold, properties.crop.strip() or None)
 
 
 def look_again(properties: Any) -> None:
@@ -99,8 +125,7 @@ def step(context: Any) -> bool:
     if is_other or not is_awaited:
         drop()
     if is_awaited and reading.preview is not None:
-        crop = properties.crop.strip() or None
-        wanted = Wanted(series, properties.hu_threshold, crop)
+        wanted = wanted_of(properties, series)
         is_awaited = see(context, reading.preview, wanted)
     is_reading = reading.job.is_running()
     window.redraw_views(context)
@@ -194,6 +219,9 @@ def after_loading(*_: Any) -> None:
     """Another file: nothing was chosen in it yet; one that Blender saved by itself may hold a preview."""
     state.is_framed = True
     last_messages.clear()
+    for reading in previews.running():
+        reading.job.cancel()
+        previews.forget(reading.request.path)
     dismiss()
 
 

@@ -28,7 +28,7 @@ def show(context: Any, mesh: bonemesh.Mesh) -> None:
     if placed is None:
         remove()  # that of another scene
         placed = bpy.data.objects.new(NAME, bpy.data.meshes.new(NAME))
-        placed[TAG] = True
+        placed[TAG] = placed.data[TAG] = True
         placed.hide_select = True
         placed.hide_render = True
         placed.data.materials.append(viewport_material(NAME, COLOUR))
@@ -43,12 +43,14 @@ def found(scene: Any) -> Any:
 
 
 def remove() -> None:
-    """Takes the preview away, from whichever scene it is in, with all that it is made of."""
+    """Takes the preview away, from whichever scene it is in, with all that it is made of.
+
+    A user who deletes the object leaves its mesh behind: that goes, too.
+    """
     for placed in [o for o in bpy.data.objects if TAG in o and o.library is None]:
-        data, materials = placed.data, [slot.material for slot in placed.material_slots]
         bpy.data.objects.remove(placed)
-        if data is not None and data.users == 0:
-            bpy.data.meshes.remove(data)
-        for material in materials:
-            if material is not None and material.users == 0:
-                bpy.data.materials.remove(material)
+    for data in [m for m in bpy.data.meshes if TAG in m and m.users == 0]:
+        bpy.data.meshes.remove(data)
+    material = bpy.data.materials.get(NAME)
+    if material is not None and material.users == 0:
+        bpy.data.materials.remove(material)

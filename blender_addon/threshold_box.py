@@ -28,9 +28,7 @@ def draw(layout: Any, context: Any) -> None:
         return
     if reading.histogram is None:
         progress = reading.job.progress
-        column.progress(
-            factor=progress.fraction, text="Reading the Images", type="BAR"
-        )
+        column.progress(factor=progress.fraction, text="Reading the Images", type="BAR")
     else:
         draw_histogram(column, reading, properties.hu_threshold)
         draw_suggestions(column, reading, properties.hu_threshold)

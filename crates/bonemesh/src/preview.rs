@@ -22,8 +22,8 @@ use serde::Serialize;
 
 use crate::{Error, VERSION};
 
-/// Voxels of the finest coarse volume: its surface takes some hundredths of a second.
-const MOST_VOXELS: NonZeroUsize = NonZero::new(1_200_000).expect("more than none");
+/// Voxels of the finest coarse volume: its surface takes two or three hundredths of a second.
+const MOST_VOXELS: NonZeroUsize = NonZero::new(750_000).expect("more than none");
 /// Coarse volumes, each an eighth of the one before.
 const LEVELS: usize = 3;
 /// Triangles that a program can take over and draw within a tenth of a second; noise at a low

@@ -71,7 +71,7 @@ fn it_lies_within_a_coarse_voxel_of_what_is_rendered() {
 
 #[test]
 fn what_would_be_too_much_to_show_is_shown_in_larger_voxels() {
-    let noise = volume(106, |[i, j, k]| {
+    let noise = volume(90, |[i, j, k]| {
         (((i * 7_919 + j * 104_729 + k * 1_299_709) % 2_003) as i16) - 1_000
     });
     let noise = preview(&noise);

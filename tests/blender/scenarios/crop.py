@@ -13,7 +13,9 @@ OPS = bpy.ops.bonemesh
 
 def box() -> Any:
     """The box in the scene."""
-    return next((o for o in bpy.context.scene.objects if "bonemesh_crop_box" in o), None)
+    return next(
+        (o for o in bpy.context.scene.objects if "bonemesh_crop_box" in o), None
+    )
 
 
 def corners() -> list[list[float]]:
@@ -41,7 +43,10 @@ def series_of(path: str, number: int = 1) -> Any:
 def expected_corners(series: Any) -> list[list[float]]:
     """The outer faces of all voxels."""
     size = (series.columns, series.rows, series.slices)
-    ends = [[(-0.5, n - 0.5)[e] for n, e in zip(size, at, strict=True)] for at in np.ndindex(2, 2, 2)]
+    ends = [
+        [(-0.5, n - 0.5)[e] for n, e in zip(size, at, strict=True)]
+        for at in np.ndindex(2, 2, 2)
+    ]
     affine = np.asarray(series.patient_from_voxel)
     return [(affine @ [*end, 1.0])[:3].tolist() for end in ends]
 

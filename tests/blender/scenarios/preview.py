@@ -94,7 +94,7 @@ def moved(properties: Any, previewing: Any) -> dict[str, Any]:
     answer["crop"] = [until_done(previewing), of_library(600, crop)]
     properties.crop = "left half"
     answer["no box"] = [until_done(previewing), str(previewing.problem())]
-    answer["said"] = panel()["box"][-1]
+    answer["said"] = panel()["box"]
     properties.crop = ""
     properties.hu_threshold = 3071
     answer["nothing"] = [until_done(previewing), str(previewing.problem())]
@@ -132,6 +132,7 @@ def deleted(properties: Any, previewing: Any) -> dict[str, Any]:
 def undone(properties: Any, previewing: Any) -> dict[str, Any]:
     """Undo and redo between moves of the slider, in Object Mode and while something is edited."""
     answer = {}
+    bpy.ops.ed.undo_push(message="begin")
     bpy.ops.mesh.primitive_cube_add()
     bpy.ops.ed.undo_push(message="cube")
     for hu in (200, 700):
@@ -139,11 +140,11 @@ def undone(properties: Any, previewing: Any) -> dict[str, Any]:
         until_done(previewing)
         bpy.ops.ed.undo_push(message=f"{hu} HU")
     steps = []
-    for _ in range(3):
+    for _ in range(2):
         bpy.ops.ed.undo()
         hu = bpy.context.scene.bonemesh.hu_threshold
         steps.append([until_done(previewing), of_library(hu)])
-    for _ in range(3):
+    for _ in range(2):
         bpy.ops.ed.redo()
         hu = bpy.context.scene.bonemesh.hu_threshold
         steps.append([until_done(previewing), of_library(hu)])
@@ -166,8 +167,14 @@ def saved(folder: Path, previewing: Any) -> dict[str, Any]:
     file = str(folder / "scene.blend")
     bpy.ops.wm.save_as_mainfile(filepath=file)
     answer = {"before": before, "after": vertices()}
+    bpy.ops.wm.read_homefile()
     with bpy.data.libraries.load(file) as (inside, _):
-        answer["inside"] = sorted(n for n in inside.objects + inside.meshes if "Preview" in n)
+        answer["inside"] = [
+            f"{kind}: {name}"
+            for kind in ("objects", "meshes", "materials")
+            for name in getattr(inside, kind)
+            if "Preview" in name
+        ]
     bpy.ops.wm.open_mainfile(filepath=file)
     answer["opened"] = [until_done(previewing), previewing.state.is_wanted]
     return answer

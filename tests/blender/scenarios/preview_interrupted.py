@@ -26,6 +26,13 @@ def begin(ct: str, hold: bool) -> tuple[Any, stage.Gate | None]:
     return previewing, gate
 
 
+def until_ended(previewing: Any) -> None:
+    """Until nothing is left to do, and nothing is read any more."""
+    until_done(previewing)
+    for reading in previewing.previews.running():
+        assert reading.job.wait(60.0)
+
+
 def left(previewing: Any) -> dict[str, Any]:
     """What is left of it."""
     return {
@@ -46,15 +53,15 @@ def main(zip: str, out: str, ct: str, how: str) -> dict[str, Any]:
     stage.install(zip)
     what, when = how.split()
     previewing, gate = begin(ct, hold=when == "reading")
-    if gate is not None:
-        open_soon(gate)
+    if gate is not None and what in ("disable", "quit"):
+        open_soon(gate)  # the add-on waits for the reading
     if what == "disable":
         bpy.ops.preferences.addon_disable(module=stage.MODULE)
     elif what == "home":
         bpy.ops.wm.read_homefile()
         if gate is not None:
             gate.open()
-        until_done(previewing)
+        until_ended(previewing)
     elif what == "open":
         file = str(Path(out) / "scene.blend")
         bpy.context.scene.bonemesh.ct_directory = str(Path(out) / "moved away")
@@ -63,10 +70,10 @@ def main(zip: str, out: str, ct: str, how: str) -> dict[str, Any]:
         bpy.ops.wm.open_mainfile(filepath=file)
         if gate is not None:
             gate.open()
-        until_done(previewing)
+        until_ended(previewing)
     elif what == "scene":
         bpy.context.window.scene = bpy.data.scenes.new("second")
         if gate is not None:
             gate.open()
-        until_done(previewing)
+        until_ended(previewing)
     return left(previewing)
