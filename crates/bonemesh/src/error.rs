@@ -119,6 +119,14 @@ pub enum Error {
         /// What stands against it.
         source: std::io::Error,
     },
+    /// A file beside a mesh that cannot be written.
+    #[error("cannot write {path}: {source}; choose another place or name for the mesh")]
+    Sidecar {
+        /// The file.
+        path: PathBuf,
+        /// What stands against it.
+        source: std::io::Error,
+    },
     /// The worker threads.
     #[error(transparent)]
     Pool(#[from] PoolError),

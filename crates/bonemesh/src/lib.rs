@@ -36,11 +36,13 @@ mod check;
 mod choices;
 pub mod cli;
 mod error;
+mod faults;
 mod left_out;
 mod memory;
 mod metal;
 mod mirror;
 mod of_cloud;
+mod options;
 mod panics;
 mod picture;
 mod preview;
@@ -49,16 +51,20 @@ mod region_report;
 mod render;
 mod report;
 mod settings;
+mod sidecar;
 mod source;
 mod table;
 mod table_pieces;
 mod thresholds;
+mod whole_file;
 
 pub use after_care::{AfterCare, AfterCareReport, Cavities, Holes, LeftHole, MOST_NAMED, care_for};
 pub use check::{Checked, Place, PrintCheck, check, check_walls, wall_thickness};
 pub use error::Error;
+pub use faults::{Faults, find_faults};
 pub use metal::MetalReport;
 pub use mirror::{ChosenPlane, PlaneChoice, PlaneReport};
+pub use options::{Chosen, OptionsReport};
 pub use panics::hush_foreign_panics;
 pub use picture::{check_picture_target, write_histogram};
 pub use preview::{Preview, PreviewReport, PreviewSurface};
@@ -67,6 +73,7 @@ pub use region_report::{RegionReport, SolidReport, ThesisReport};
 pub use render::{Rendered, mesh_cloud, point_cloud, render, render_volume};
 pub use report::{CheckReport, LeftOutIslands, RenderReport, Seconds, check as check_topology};
 pub use settings::{AlphaRule, Method, Sampling, Settings};
+pub use sidecar::{check_sidecar_target, sidecar_path, write_sidecar};
 pub use source::{Contents, Reading, Source};
 pub use thresholds::{
     ChosenThreshold, HistogramReport, HistogramRequest, SuggestionReport, choose_threshold,
@@ -81,9 +88,9 @@ pub use bonemesh_delaunay::{DelaunayError, Points, Tetrahedra, tetrahedralize};
 pub use bonemesh_dicom::{DicomError, Gap, LeftOut, SeriesChoice, SeriesReport};
 pub use bonemesh_mesh::{
     Decimated, Decimation, HoleLeft, HoleLimits, HoleReason, HolesFilled, Intersection,
-    Intersections, Islands, Kept, MeshError, Plane, RemovedPart, Smoothed, TriangleMesh,
-    TriangleTree, check_target, decimate, fill_cavities, fill_holes, find_intersections,
-    keep_islands, read_mesh, smooth, write_mesh,
+    Intersections, Islands, Kept, MeshError, Outline, PatientFrame, Plane, RemovedPart, Smoothed,
+    TriangleMesh, TriangleTree, check_target, decimate, fill_cavities, fill_holes,
+    find_intersections, keep_islands, read_mesh, section, smooth, write_mesh, write_mesh_in,
 };
 pub use bonemesh_metal::{Metal, MetalError, Streaks, damp_metal, find_metal};
 pub use bonemesh_phantom::{
@@ -106,7 +113,8 @@ pub use bonemesh_surface::{
 };
 pub use bonemesh_task::{Cancel, Cancelled, Progress, Task, pool};
 pub use bonemesh_volume::{
-    Affine, CropBox, CropError, Geometry, Histogram, Volume, VolumeError, Voxels,
+    Affine, Anatomical, CropBox, CropError, Geometry, Histogram, SlicePlane, Volume, VolumeError,
+    Voxels, Window,
 };
 pub use bonemesh_volume_file::VolumeFileError;
 

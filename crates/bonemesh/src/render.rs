@@ -16,6 +16,7 @@ use crate::choices::{no_cloud, refuse_unused};
 use crate::left_out::leave_out;
 use crate::metal::{note, without_streaks};
 use crate::of_cloud::cloud_to_mesh;
+use crate::options::OptionsReport;
 use crate::report::{RenderReport, Seconds, check};
 use crate::source::{Reading, Source};
 use crate::thresholds::{chosen, leveled};
@@ -110,6 +111,7 @@ fn volume_to_mesh(volume: &Volume, settings: &Settings, task: &Task) -> Result<R
     let (volume, metal) = without_streaks(volume, settings, task)?;
     let volume = &*volume;
     let chosen = chosen(volume, settings, task)?;
+    let options = OptionsReport::of(settings);
     let settings = &chosen.of(settings);
     let threshold_s = lap(&mut clock);
     let mut rendered = if settings.method.needs_voxels() {
@@ -122,6 +124,7 @@ fn volume_to_mesh(volume: &Volume, settings: &Settings, task: &Task) -> Result<R
         cloud_to_mesh(&cloud, Some(bone_mm3), settings, seconds, task)?
     };
     rendered = cared_for(rendered, &settings.after_care, task)?;
+    rendered.report.options = options;
     rendered.report.spacing_mm = Some(volume.geometry().spacing_mm());
     rendered.report.threshold_hu = Some(settings.threshold.hu());
     rendered.report.threshold_reason = chosen.reason;

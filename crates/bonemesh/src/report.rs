@@ -7,6 +7,7 @@ use serde::Serialize;
 use crate::after_care::AfterCareReport;
 use crate::memory::peak_mib;
 use crate::metal::MetalReport;
+use crate::options::OptionsReport;
 use crate::{Error, Settings, VERSION};
 
 /// Wall-clock seconds of each step.
@@ -114,6 +115,8 @@ pub struct RenderReport {
     pub metal: Option<MetalReport>,
     /// What was done to the finished mesh; `None` if nothing was asked for.
     pub after_care: Option<AfterCareReport>,
+    /// Every option, so that the mesh can be made again.
+    pub options: OptionsReport,
     /// Seconds of each step.
     pub seconds: Seconds,
     /// Peak memory of this process in MiB, where the system tells.
@@ -151,6 +154,7 @@ impl RenderReport {
             left_out_specks: None,
             metal: None,
             after_care: None,
+            options: OptionsReport::of(settings),
             seconds,
             peak_mib: peak_mib(),
             warnings: Vec::new(),

@@ -1,8 +1,9 @@
 //! Triangle meshes whose indices and coordinates are valid by construction, their files and their
 //! topology.
 //!
-//! [`check_topology`] looks at connections; [`find_intersections`] finds, exactly, triangles that pass
-//! through, overlap or touch one another; [`wall_thickness`] measures through the body.
+//! [`check_topology`] looks at connections, [`find_faults`] finds where they are broken; [`find_intersections`] finds, exactly, triangles that pass
+//! through, overlap or touch one another; [`wall_thickness`] measures through the body; [`section`]
+//! cuts along a plane.
 //! [`keep_islands`], [`fill_cavities`], [`smooth`] and [`decimate`] give a new mesh: what was a closed
 //! 2-manifold that passes through itself nowhere still is one, with the coordinates that a file holds.
 //! [`fill_holes`] closes what is open, [`face_outward`] turns over what faces the wrong way.
@@ -58,6 +59,7 @@ mod merge;
 mod mesh;
 mod parts;
 mod plane;
+mod section;
 mod smooth;
 mod stars;
 mod thickness;
@@ -70,7 +72,8 @@ pub use error::MeshError;
 pub use holes::{HoleLeft, HoleLimits, HoleReason, HolesFilled, fill_holes};
 pub use intersections::{Intersection, Intersections, find_intersections};
 pub use io::{
-    MeshFormat, check_target, check_values_target, read_mesh, write_mesh, write_with_values,
+    MeshFormat, PatientFrame, check_target, check_values_target, read_mesh, write_mesh,
+    write_mesh_in, write_with_values,
 };
 pub use mesh::TriangleMesh;
 pub use parts::{
@@ -78,7 +81,8 @@ pub use parts::{
     fill_cavities, keep_islands, take_islands,
 };
 pub use plane::Plane;
+pub use section::{Outline, section};
 pub use smooth::{Smoothed, smooth};
 pub use thickness::{Thinnest, WallThickness, wall_thickness, wall_thickness_at};
-pub use topology::{Sets, Topology, check_topology};
+pub use topology::{Faults, Sets, Topology, check_topology, find_faults};
 pub use tree::{Nearest, TriangleTree};

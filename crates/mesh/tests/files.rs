@@ -11,7 +11,10 @@ mod shapes;
 use std::fs;
 use std::path::Path;
 
-use bonemesh_mesh::{MeshError, TriangleMesh, check_target, read_mesh, write_mesh};
+use bonemesh_mesh::{
+    MeshError, PatientFrame, TriangleMesh, check_target, check_topology, read_mesh, write_mesh,
+    write_mesh_in,
+};
 use bonemesh_task::Task;
 use proptest::prelude::*;
 use shapes::{box_mesh, mesh, torus};
@@ -229,4 +232,36 @@ fn a_pipe_is_refused_and_stays() {
     let refused = write_mesh(&pipe, &torus(8, 8), &Task::default());
     assert!(matches!(refused, Err(MeshError::NotAFile { .. })));
     assert!(fs::metadata(&pipe).unwrap().file_type().is_fifo());
+}
+
+#[test]
+fn another_frame_turns_the_body_and_mirrors_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let body = box_mesh([0.0, 1.0, -3.0], [2.0, 5.0, 4.0]);
+    for name in ["box.stl", "box.ply", "box.obj", "box.3mf"] {
+        let path = folder.path().join(name);
+        write_mesh_in(&path, &body, PatientFrame::Ras, &Task::default()).unwrap();
+        let back = read(&path).unwrap();
+        assert_eq!(
+            back.bounds_mm(),
+            Some([[-2.0, -5.0, -3.0], [0.0, -1.0, 4.0]]),
+            "{name}"
+        );
+        let topology = check_topology(&back, &Task::default()).unwrap();
+        assert!((topology.volume_mm3 - 56.0).abs() < 1e-9, "{name}");
+        assert_eq!(back.triangles().len(), body.triangles().len());
+        if name != "box.3mf" {
+            let text = fs::read(&path).unwrap();
+            let text = String::from_utf8_lossy(&text);
+            assert!(text.contains("patient space RAS"), "{name}");
+            assert!(!text.contains("LPS") && !text.contains("-0 "), "{name}");
+        }
+    }
+    assert_eq!("RAS".parse(), Ok(PatientFrame::Ras));
+    assert!(
+        "xyz"
+            .parse::<PatientFrame>()
+            .unwrap_err()
+            .contains("lps or ras")
+    );
 }

@@ -217,6 +217,11 @@ impl FileTrouble {
             | Error::Mesh(MeshError::Unreadable { .. } | MeshError::Unwritable { .. }) => {
                 Self::Other
             }
+            Error::Sidecar { source, .. } => match source.kind() {
+                std::io::ErrorKind::NotFound => Self::Missing,
+                std::io::ErrorKind::PermissionDenied => Self::Forbidden,
+                _ => Self::Other,
+            },
             _ => return None,
         })
     }

@@ -22,10 +22,12 @@ mod mesh;
 mod mirror;
 mod options;
 mod phantom;
+mod planes;
 mod preview;
 mod region;
 mod render;
 mod report;
+mod section;
 mod series;
 mod surface;
 mod tetrahedra;
@@ -47,7 +49,7 @@ mod _native {
     #[pymodule_export]
     use crate::cancel::Cancel;
     #[pymodule_export]
-    use crate::check::{check, wall_thickness};
+    use crate::check::{check, faults, wall_thickness};
     #[pymodule_export]
     use crate::cloud::{mean_neighbour_distance, point_cloud, sample};
     #[pymodule_export]
@@ -61,11 +63,15 @@ mod _native {
     #[pymodule_export]
     use crate::phantom::{phantom, write_phantom};
     #[pymodule_export]
+    use crate::planes::SlicePlane;
+    #[pymodule_export]
     use crate::preview::Preview;
     #[pymodule_export]
     use crate::region::{local_thickness, select_roi};
     #[pymodule_export]
     use crate::render::{methods, render};
+    #[pymodule_export]
+    use crate::section::section;
     #[pymodule_export]
     use crate::series::{LeftOut, Scan, Series, find_series, read_series, scan};
     #[pymodule_export]

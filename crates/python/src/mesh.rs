@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use bonemesh::{Error, MeshError, TriangleMesh};
+use bonemesh::{Error, MeshError, PatientFrame, TriangleMesh};
 use ndarray::Array2;
 use numpy::PyArray2;
 use pyo3::prelude::*;
@@ -14,7 +14,7 @@ use crate::arrays::{Input, numpy, rows};
 use crate::cancel::Cancel;
 use crate::detach::{Watch, detached};
 use crate::errors;
-use crate::report::{dict, json};
+use crate::report::{dict, json, value};
 use crate::views::read_only;
 
 /// A triangle mesh in millimetres; it never changes.
@@ -70,18 +70,33 @@ impl Mesh {
     }
 
     /// Write the mesh to a file; its extension (.stl, .ply, .obj, .3mf) names the format.
-    #[pyo3(signature = (path, *, progress=None, cancel=None))]
+    ///
+    /// - `frame`: "LPS", to the left, the back and the head, as the mesh has it; or "RAS", to the right, the
+    ///   front and the head: turned, not mirrored. The file says which.
+    /// - `sidecar`: writes the report beside it, as PATH.json, with the file's unit and frame, without times,
+    ///   memory and warnings.
+    #[pyo3(signature = (path, *, frame="LPS", sidecar=false, progress=None, cancel=None))]
     fn save(
         &self,
         py: Python<'_>,
         path: PathBuf,
+        frame: &str,
+        sidecar: bool,
         progress: Option<Py<PyAny>>,
         cancel: Option<&Cancel>,
     ) -> PyResult<()> {
         let watch = Watch::new(py, progress, cancel)?;
         let parts = self.parts();
+        let frame: PatientFrame = frame.parse().map_err(|e| errors::unusable(py, e))?;
+        let report = sidecar.then(|| self.report.clone());
         detached(py, watch, move |task| {
-            Ok(bonemesh::write_mesh(&path, &parts.mesh()?, task)?)
+            if report.is_some() {
+                bonemesh::check_sidecar_target(&path)?;
+            }
+            bonemesh::write_mesh_in(&path, &parts.mesh()?, frame, task)?;
+            report.map_or(Ok(()), |report| {
+                bonemesh::write_sidecar(&path, frame, &value(&report))
+            })
         })
     }
 

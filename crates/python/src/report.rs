@@ -15,3 +15,8 @@ pub(crate) fn dict<'py>(py: Python<'py>, report: &str) -> PyResult<Bound<'py, Py
     let value = py.import("json")?.call_method1("loads", (report,))?;
     Ok(value.cast_into::<PyDict>()?)
 }
+
+/// The JSON object `report` as a value.
+pub(crate) fn value(report: &str) -> serde_json::Value {
+    serde_json::from_str(report).expect("made by `json`: anything else is a bug")
+}

@@ -2,13 +2,16 @@
 
 use std::sync::Arc;
 
-use bonemesh::{Affine, Geometry, Voxels};
+use bonemesh::{Affine, Geometry, Voxels, Window};
 use ndarray::{Array3, arr2};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 
 use crate::arrays::{Input, numpy, owned};
+use crate::cancel::Cancel;
+use crate::detach::{Watch, detached};
 use crate::errors;
+use crate::planes::SlicePlane;
 use crate::views::read_only;
 
 /// Largest difference of the fourth row of an affine matrix from 0, 0, 0, 1.
@@ -63,6 +66,47 @@ impl Volume {
     #[getter]
     fn spacing_mm(&self) -> (f64, f64, f64) {
         self.volume.geometry().spacing_mm().into()
+    }
+
+    /// The pictures that can be taken along one normal: "axial", "coronal" or "sagittal", of the stack's own.
+    fn plane(&self, py: Python<'_>, name: &str) -> PyResult<SlicePlane> {
+        let anatomical = name.parse().map_err(|e| errors::unusable(py, e))?;
+        Ok(SlicePlane::of(
+            self.volume.geometry().slice_plane(anatomical),
+        ))
+    }
+
+    /// A picture along a plane, `[row, column]`, the top row first; see `plane` for its place.
+    ///
+    /// - `position_mm`: along the plane's normal; between slices values are interpolated linearly.
+    /// - `window_hu`: centre and width of what is shown from black to white: `uint8`; None gives `float32`
+    ///   Hounsfield units, NaN where nothing was measured.
+    #[pyo3(signature = (name, position_mm, *, window_hu=None, progress=None, cancel=None))]
+    fn slice<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        position_mm: f64,
+        window_hu: Option<(f64, f64)>,
+        progress: Option<Py<PyAny>>,
+        cancel: Option<&Cancel>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let watch = Watch::new(py, progress, cancel)?;
+        let plane = self.plane(py, name)?.0;
+        if !position_mm.is_finite() {
+            let message = format!("position_mm is {position_mm}; give a place along the normal");
+            return Err(errors::argument(py, &message));
+        }
+        let window = window_hu.map(|(centre, width)| Window::new(centre, width));
+        let window = window.transpose().map_err(|e| errors::unusable(py, e))?;
+        let volume = self.shared();
+        let hu = detached(py, watch, move |task| {
+            Ok(volume.slice(&plane, position_mm, task)?)
+        })?;
+        Ok(match window {
+            Some(window) => owned(py, hu.map(|hu| window.grey(*hu)))?.into_any(),
+            None => owned(py, hu)?.into_any(),
+        })
     }
 
     /// What the reader had to say of the series.

@@ -1,5 +1,6 @@
 //! A box of voxels, written as people write it: `I0:I1,J0:J1,K0:K1`.
 
+use std::fmt;
 use std::ops::Range;
 use std::str::FromStr;
 
@@ -47,6 +48,18 @@ pub enum CropError {
         /// How many the volume has.
         size: usize,
     },
+}
+
+impl fmt::Display for CropBox {
+    /// As it is written.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [columns, rows, slices] = [&self.columns, &self.rows, &self.slices];
+        write!(
+            f,
+            "{}:{},{}:{},{}:{}",
+            columns.start, columns.end, rows.start, rows.end, slices.start, slices.end
+        )
+    }
 }
 
 impl CropBox {

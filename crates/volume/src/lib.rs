@@ -7,6 +7,8 @@
 //! [`Volume::in_patient_order`] turns and flips the axes so that work done slice by slice does not
 //! depend on how the voxels were stored.
 //!
+//! [`Geometry::slice_plane`] and [`Volume::slice`] take axial, coronal and sagittal pictures.
+//!
 //! [`Histogram`] counts how often each value occurs, padding apart.
 //!
 //! [`Volume::coarsened`] takes voxels together for a quick look, and keeps thin bone.
@@ -32,12 +34,16 @@ mod geometry;
 mod histogram;
 mod order;
 mod orientation;
+mod planes;
+mod slice;
 
 pub use affine::Affine;
 pub use crop::{CropBox, CropError};
 pub use geometry::Geometry;
 pub use histogram::Histogram;
 use ndarray::{Array3, s};
+pub use planes::{Anatomical, SlicePlane};
+pub use slice::Window;
 
 /// What is wrong with a volume's parts.
 #[non_exhaustive]
@@ -62,6 +68,16 @@ pub enum VolumeError {
         array: [usize; 3],
         /// Shape that the geometry was made for.
         geometry: [usize; 3],
+    },
+    /// No window.
+    #[error(
+        "a window of {width_hu} HU around {centre_hu} HU shows nothing; give a centre and a width above 0"
+    )]
+    Window {
+        /// Its middle.
+        centre_hu: f64,
+        /// From black to white.
+        width_hu: f64,
     },
     /// The crop box leaves nothing.
     #[error(transparent)]

@@ -79,7 +79,7 @@ impl AxisOrder {
 
 /// The axis nearest to each of the patient's axes: the three cosines are largest in sum. Turned
 /// by half a right angle two sums are equal; then the directions themselves decide.
-fn assigned(directions: [[f64; 3]; 3]) -> [usize; 3] {
+pub(crate) fn assigned(directions: [[f64; 3]; 3]) -> [usize; 3] {
     let whole = |cosine: f64| (cosine / COSINE).round() as i64;
     let key = |axes: &[usize; 3]| {
         let cosine = |patient: usize| directions[axes[patient]][patient];

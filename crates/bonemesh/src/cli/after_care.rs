@@ -3,11 +3,12 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use bonemesh_mesh::{Decimation, Islands, read_mesh, write_mesh};
+use bonemesh_mesh::{Decimation, Islands, read_mesh};
 use bonemesh_task::{Task, pool};
 use clap::Args;
 
 use super::arguments::{count, length_mm, mesh_file};
+use super::mesh_file::FileArguments;
 use super::output::Answer;
 use super::text;
 use crate::Error;
@@ -60,6 +61,8 @@ pub(super) struct Repair {
     #[arg(short, long, value_parser = mesh_file())]
     output: PathBuf,
     #[command(flatten)]
+    file: FileArguments,
+    #[command(flatten)]
     care: AfterCareArguments,
     /// Worker threads; the result does not depend on it.
     #[arg(long, allow_negative_numbers = true, value_parser = count)]
@@ -68,14 +71,16 @@ pub(super) struct Repair {
 
 /// Turns over what faces the wrong way in a file's mesh, and does to it what the arguments ask for.
 pub(super) fn run(arguments: &Repair, task: &Task) -> Result<Answer, Error> {
-    bonemesh_mesh::check_target(&arguments.output)?;
+    arguments.file.check(&arguments.output)?;
     let mesh = read_mesh(&arguments.mesh, task)?;
     let care = AfterCare {
         face_outward: true,
         ..arguments.care.settings()
     };
     let (mesh, report) = pool(arguments.threads)?.install(|| care_for(mesh, &care, task))?;
-    write_mesh(&arguments.output, &mesh, task)?;
+    arguments
+        .file
+        .write(&arguments.output, &mesh, &report, task)?;
     let (vertices, triangles) = (mesh.vertices_mm().len(), mesh.triangles().len());
     let text = format!(
         "{}\n  {triangles} triangles, {vertices} vertices\n{}  {:.2} s\n",

@@ -13,6 +13,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::after_care::{AfterCareArguments, Repair};
 use super::histogram::HistogramArguments;
+use super::mesh_file::FileArguments;
 use super::phantom::PhantomArguments;
 use super::roi::{Mirror, Roi};
 use super::surface::{AlphaChoice, StudyArguments};
@@ -154,6 +155,8 @@ pub(super) struct Render {
     #[arg(short, long, value_parser = mesh_file())]
     pub(super) output: PathBuf,
     #[command(flatten)]
+    pub(super) file: FileArguments,
+    #[command(flatten)]
     pub(super) edges: EdgeArguments,
     #[command(flatten)]
     pub(super) surface: SurfaceArguments,
@@ -212,6 +215,8 @@ pub(super) struct MeshArguments {
     /// Mesh file to write (.stl, .ply, .obj, .3mf).
     #[arg(short, long, value_parser = mesh_file())]
     pub(super) output: PathBuf,
+    #[command(flatten)]
+    pub(super) file: FileArguments,
     #[command(flatten)]
     pub(super) surface: SurfaceArguments,
     /// Worker threads; the result does not depend on it.

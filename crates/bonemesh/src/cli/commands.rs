@@ -4,12 +4,13 @@ use std::path::Path;
 use std::time::Instant;
 
 use bonemesh_cloud::{read_cloud, write_cloud};
-use bonemesh_mesh::{check_values_target, read_mesh, write_mesh, write_with_values};
+use bonemesh_mesh::{check_values_target, read_mesh, write_with_values};
 use bonemesh_phantom::write_phantom;
 use bonemesh_task::{Task, pool};
 use serde_json::json;
 
 use super::arguments::{Check, CloudArguments, Command, Info, MeshArguments, Render};
+use super::mesh_file::FileArguments;
 use super::output::Answer;
 use super::phantom::PhantomArguments;
 use super::{after_care, histogram, region, text};
@@ -50,28 +51,34 @@ fn info(arguments: &Info, task: &Task) -> Result<Answer, Error> {
 }
 
 fn run_render(arguments: &Render, task: &Task) -> Result<Answer, Error> {
-    bonemesh_mesh::check_target(&arguments.output)?;
+    arguments.file.check(&arguments.output)?;
     let rendered = render(&arguments.directory, &arguments.settings(), task)?;
-    save(rendered, &arguments.output, task)
+    save(rendered, &arguments.output, &arguments.file, task)
 }
 
 fn run_mesh(arguments: &MeshArguments, task: &Task) -> Result<Answer, Error> {
-    bonemesh_mesh::check_target(&arguments.output)?;
+    arguments.file.check(&arguments.output)?;
     let cloud = read_cloud(&arguments.cloud)?;
     let settings = Settings {
         threads: arguments.threads,
         ..arguments.surface.settings(true)
     };
     let rendered = mesh_cloud(&cloud, &settings, task)?;
-    save(rendered, &arguments.output, task)
+    save(rendered, &arguments.output, &arguments.file, task)
 }
 
-fn save(rendered: Rendered, file: &Path, task: &Task) -> Result<Answer, Error> {
+fn save(
+    rendered: Rendered,
+    output: &Path,
+    file: &FileArguments,
+    task: &Task,
+) -> Result<Answer, Error> {
     let Rendered { mesh, mut report } = rendered;
     let clock = Instant::now();
-    write_mesh(file, &mesh, task)?;
+    file.write(output, &mesh, &report, task)?;
     report.written(clock.elapsed().as_secs_f64());
-    Ok(Answer::new(&report, text::rendered(&report, file)).with("output", file.to_string_lossy()))
+    let answer = Answer::new(&report, text::rendered(&report, output));
+    Ok(answer.with("output", output.to_string_lossy()))
 }
 
 fn run_cloud(arguments: &CloudArguments, task: &Task) -> Result<Answer, Error> {

@@ -7,6 +7,7 @@ mod after_care;
 mod arguments;
 mod commands;
 mod histogram;
+mod mesh_file;
 mod output;
 mod phantom;
 mod progress;

@@ -3,21 +3,23 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-use bonemesh_mesh::{read_mesh, write_mesh};
+use bonemesh_mesh::read_mesh;
 use bonemesh_roi::read_selection;
 use bonemesh_task::Task;
 use serde_json::json;
 
+use super::mesh_file::FileArguments;
 use super::output::Answer;
 use super::roi::{Mirror, Roi};
 use super::text;
 use crate::Error;
 use crate::region::{RegionResult, select_roi, select_rois};
 use crate::region_report::RegionReport;
+use crate::sidecar::sidecar_path;
 
 /// `roi`.
 pub(super) fn cut(arguments: &Roi, task: &Task) -> Result<Answer, Error> {
-    bonemesh_mesh::check_target(&arguments.output)?;
+    arguments.file.check(&arguments.output)?;
     let mesh = read_mesh(&arguments.mesh, task)?;
     let selected = match (&arguments.selection.file, &arguments.selection.within) {
         (_, Some(ball)) => ball.vertices(&mesh),
@@ -26,11 +28,12 @@ pub(super) fn cut(arguments: &Roi, task: &Task) -> Result<Answer, Error> {
     };
     if arguments.separate {
         let regions = select_rois(&mesh, &selected, &arguments.request(), task)?;
-        return write_regions(&regions, &arguments.output, task);
+        return write_regions(&regions, &arguments.output, &arguments.file, task);
     }
     let region = select_roi(&mesh, &selected, &arguments.request(), task)?;
-    write_mesh(&arguments.output, &region.mesh, task)?;
-    Ok(region_answer(&region.report, &arguments.output))
+    let (output, file) = (&arguments.output, &arguments.file);
+    file.write(output, &region.mesh, &region.report, task)?;
+    Ok(region_answer(&region.report, output))
 }
 
 fn region_answer(report: &RegionReport, output: &Path) -> Answer {
@@ -38,18 +41,26 @@ fn region_answer(report: &RegionReport, output: &Path) -> Answer {
 }
 
 /// Writes each region to a file of its own: all of them or, where one fails, none.
-fn write_regions(regions: &[RegionResult], output: &Path, task: &Task) -> Result<Answer, Error> {
+fn write_regions(
+    regions: &[RegionResult],
+    output: &Path,
+    file: &FileArguments,
+    task: &Task,
+) -> Result<Answer, Error> {
     let mut text = String::new();
     let mut reports = Vec::new();
     let mut written: Vec<PathBuf> = Vec::new();
     for (number, region) in (1..).zip(regions) {
         let path = numbered(output, number);
-        if let Err(error) = write_mesh(&path, &region.mesh, task) {
-            for path in &written {
+        if let Err(error) = file.write(&path, &region.mesh, &region.report, task) {
+            for path in written
+                .iter()
+                .flat_map(|path| [path.clone(), sidecar_path(path)])
+            {
                 // What cannot be taken away again stays: the error is that of the file that failed.
                 let _ = std::fs::remove_file(path);
             }
-            return Err(error.into());
+            return Err(error);
         }
         let answer = region_answer(&region.report, &path);
         text.push_str(&answer.text);
@@ -68,14 +79,16 @@ fn numbered(path: &Path, number: usize) -> PathBuf {
 
 /// `mirror`.
 pub(super) fn mirror(arguments: &Mirror, task: &Task) -> Result<Answer, Error> {
-    bonemesh_mesh::check_target(&arguments.output)?;
+    arguments.file.check(&arguments.output)?;
     let mesh = read_mesh(&arguments.mesh, task)?;
     let whole = match &arguments.of {
         Some(file) => &read_mesh(file, task)?,
         None => &mesh,
     };
     let chosen = arguments.plane.choose(whole, arguments.threads, task)?;
-    write_mesh(&arguments.output, &mesh.mirrored(&chosen.plane), task)?;
+    let mirrored = mesh.mirrored(&chosen.plane);
+    let (output, file) = (&arguments.output, &arguments.file);
+    file.write(output, &mirrored, &chosen.report, task)?;
     let text = text::mirrored(&chosen.report, &arguments.output);
     Ok(Answer::new(&chosen.report, text).with("output", arguments.output.to_string_lossy()))
 }

@@ -9,6 +9,7 @@ use bonemesh_roi::{ClearanceMm, Direction, Method as RoiMethod, ThicknessMm};
 use clap::Args;
 
 use super::arguments::{count, mesh_file, number};
+use super::mesh_file::FileArguments;
 use crate::mirror::PlaneChoice;
 use crate::region::{Mirror as Mirrored, RegionRequest};
 
@@ -24,6 +25,8 @@ pub(super) struct Roi {
     /// Mesh file to write (.stl, .ply, .obj, .3mf).
     #[arg(short, long, value_parser = mesh_file())]
     pub(super) output: PathBuf,
+    #[command(flatten)]
+    pub(super) file: FileArguments,
     /// How the region is found: solid, cut out of the bone; or thesis, slice by slice along one normal.
     #[arg(long, default_value = "solid")]
     method: RoiMethod,
@@ -96,6 +99,8 @@ pub(super) struct Mirror {
     /// Mesh file to write (.stl, .ply, .obj, .3mf).
     #[arg(short, long, value_parser = mesh_file())]
     pub(super) output: PathBuf,
+    #[command(flatten)]
+    pub(super) file: FileArguments,
     /// Worker threads; the result does not depend on it.
     #[arg(long, allow_negative_numbers = true, value_parser = count)]
     pub(super) threads: Option<NonZeroUsize>,

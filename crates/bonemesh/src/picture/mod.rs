@@ -8,10 +8,9 @@ mod canvas;
 use std::io;
 use std::path::Path;
 
-use tempfile::NamedTempFile;
-
 use crate::Error;
 use crate::thresholds::{HistogramReport, SuggestionReport};
+use crate::whole_file::{probe, write_whole};
 use canvas::{Canvas, Colour, TEXT_HEIGHT, text_width};
 
 const WIDTH: usize = 1200;
@@ -62,8 +61,7 @@ pub fn check_picture_target(path: &Path) -> Result<(), Error> {
         );
         return Err(failed(path, reason));
     }
-    create_beside(path).map_err(|source| failed(path, source))?;
-    Ok(())
+    probe(path).map_err(|source| failed(path, source))
 }
 
 fn failed(path: &Path, source: io::Error) -> Error {
@@ -73,50 +71,15 @@ fn failed(path: &Path, source: io::Error) -> Error {
     }
 }
 
-/// A temporary file in the folder of `path`, which a rename would not refuse to replace.
-fn create_beside(path: &Path) -> io::Result<NamedTempFile> {
-    if let Ok(existing) = std::fs::metadata(path) {
-        if !existing.is_file() {
-            return Err(io::Error::other("it is no ordinary file"));
-        }
-        if existing.permissions().readonly() {
-            return Err(io::Error::new(
-                io::ErrorKind::PermissionDenied,
-                "the file is write-protected",
-            ));
-        }
-    }
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    if !folder.is_dir() {
-        let missing = format!("there is no folder {}", folder.display());
-        return Err(io::Error::new(io::ErrorKind::NotFound, missing));
-    }
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".bonemesh-");
-    #[cfg(unix)]
-    {
-        // A temporary file is private by default; this one is to become an ordinary file.
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    builder.tempfile_in(folder)
-}
-
 fn save(path: &Path, canvas: &Canvas) -> io::Result<()> {
-    // A link is followed, so it stays a link.
-    let target = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    let mut file = create_beside(&target)?;
-    let mut encoder = png::Encoder::new(io::BufWriter::new(&mut file), WIDTH as u32, HEIGHT as u32);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(canvas.pixels())?;
-    writer.finish()?;
-    file.persist(target)?;
-    Ok(())
+    write_whole(path, |file| {
+        let mut encoder = png::Encoder::new(io::BufWriter::new(file), WIDTH as u32, HEIGHT as u32);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(canvas.pixels())?;
+        Ok(writer.finish()?)
+    })
 }
 
 /// Where values and counts lie on the chart.

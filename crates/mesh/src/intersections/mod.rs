@@ -36,6 +36,8 @@ pub struct Intersections {
     pub count: usize,
     /// Triangles that are in at least one pair.
     pub triangles: usize,
+    /// Their numbers, ascending.
+    pub in_pairs: Vec<u32>,
     /// The pairs of lowest numbers, in order; as many as were asked for.
     pub pairs: Vec<Intersection>,
 }
@@ -84,12 +86,15 @@ pub fn find_intersections(
         .try_reduce(|| Found::new(most), |a, b| Ok::<_, Cancelled>(a.plus(b)))?;
     let (count, pairs) = found.into_parts();
     let pairs = pairs.into_par_iter();
+    let in_pairs: Vec<u32> = (0..)
+        .zip(&is_in_pair)
+        .filter(|(_, is)| is.load(Ordering::Relaxed))
+        .map(|(triangle, _)| triangle)
+        .collect();
     Ok(Intersections {
         count,
-        triangles: is_in_pair
-            .iter()
-            .filter(|is| is.load(Ordering::Relaxed))
-            .count(),
+        triangles: in_pairs.len(),
+        in_pairs,
         pairs: pairs.map(|pair| located(tree.mesh(), pair)).collect(),
     })
 }

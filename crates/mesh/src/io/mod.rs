@@ -1,6 +1,7 @@
 //! Mesh files, chosen by their extension.
 
 mod atomic;
+mod frame;
 mod obj_read;
 mod obj_write;
 mod ply_header;
@@ -20,13 +21,11 @@ use std::path::Path;
 use bonemesh_task::Task;
 
 use crate::{MeshError, TriangleMesh};
+pub use frame::PatientFrame;
 
 /// Triangles encoded by one call of rayon and then written: 3 MB, so memory stays small, progress
 /// is smooth and a cancel takes effect at once.
 const BLOCK: usize = 1 << 16;
-
-/// What lengths and axes mean, said in every format that has a place for words.
-const FRAME: &str = "millimetres, patient space LPS (x to the left, y to the back, z to the head)";
 
 /// A mesh file format.
 #[non_exhaustive]
@@ -122,15 +121,29 @@ pub fn write_mesh(
     mesh: &TriangleMesh,
     task: &Task,
 ) -> Result<(), MeshError> {
+    write_mesh_in(path, mesh, PatientFrame::Lps, task)
+}
+
+/// Writes a mesh, whose coordinates are LPS, as [`write_mesh`] does, in another frame of the patient.
+///
+/// # Errors
+/// Those of [`write_mesh`].
+pub fn write_mesh_in(
+    path: impl AsRef<Path>,
+    mesh: &TriangleMesh,
+    frame: PatientFrame,
+    task: &Task,
+) -> Result<(), MeshError> {
     let path = path.as_ref();
     let format = MeshFormat::of(path)?;
     check_writable(path, mesh)?;
+    let mesh = &*frame.of(mesh);
     task.begin("write", mesh.triangles().len());
     atomic::write(path, |file| match format {
-        MeshFormat::Stl => stl_write::write(file, mesh, task),
-        MeshFormat::Ply => ply_write::write(file, mesh, None, task),
-        MeshFormat::Obj => obj_write::write(file, mesh, task),
-        MeshFormat::ThreeMf => threemf_write::write(file, mesh, task),
+        MeshFormat::Stl => stl_write::write(file, mesh, frame, task),
+        MeshFormat::Ply => ply_write::write(file, mesh, frame, None, task),
+        MeshFormat::Obj => obj_write::write(file, mesh, frame, task),
+        MeshFormat::ThreeMf => threemf_write::write(file, mesh, frame, task),
     })
 }
 
@@ -157,7 +170,9 @@ pub fn write_with_values(
     }
     task.begin("write", mesh.triangles().len());
     let values = Some(ply_write::Values { name, of_vertices });
-    atomic::write(path, |file| ply_write::write(file, mesh, values, task))
+    atomic::write(path, |file| {
+        ply_write::write(file, mesh, PatientFrame::Lps, values, task)
+    })
 }
 
 /// Tells now whether [`write_with_values`] could write `path`.

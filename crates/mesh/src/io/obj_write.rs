@@ -6,15 +6,20 @@ use std::io::Write;
 use bonemesh_task::Task;
 
 use super::atomic::Fault;
-use super::{FRAME, text_blocks};
+use super::{PatientFrame, text_blocks};
 use crate::TriangleMesh;
 
 /// Writes a comment, all vertices and all triangles, whose vertex numbers begin at 1.
 ///
 /// Coordinates are the shortest decimals that give back their 32-bit floats.
-pub(super) fn write(file: &mut File, mesh: &TriangleMesh, task: &Task) -> Result<(), Fault> {
+pub(super) fn write(
+    file: &mut File,
+    mesh: &TriangleMesh,
+    frame: PatientFrame,
+    task: &Task,
+) -> Result<(), Fault> {
     task.begin("write", mesh.vertices_mm().len() + mesh.triangles().len());
-    writeln!(file, "# {FRAME}; made by Bonemesh")?;
+    writeln!(file, "# {}; made by Bonemesh", frame.in_words())?;
     text_blocks::write(file, mesh.vertices_mm(), task, |vertex, text| {
         let [x, y, z] = vertex.map(|c| c as f32);
         writeln!(text, "v {x} {y} {z}")

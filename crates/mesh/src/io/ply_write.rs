@@ -6,7 +6,7 @@ use std::io::Write;
 use bonemesh_task::Task;
 
 use super::atomic::Fault;
-use super::{BLOCK, FRAME};
+use super::{BLOCK, PatientFrame};
 use crate::TriangleMesh;
 
 /// A number for each vertex.
@@ -21,14 +21,16 @@ pub(super) struct Values<'a> {
 pub(super) fn write(
     file: &mut File,
     mesh: &TriangleMesh,
+    frame: PatientFrame,
     values: Option<Values<'_>>,
     task: &Task,
 ) -> Result<(), Fault> {
     let property = values.map(|values| format!("property float {}\n", values.name));
     let header = format!(
-        "ply\nformat binary_little_endian 1.0\ncomment {FRAME}\ncomment made by Bonemesh\n\
+        "ply\nformat binary_little_endian 1.0\ncomment {}\ncomment made by Bonemesh\n\
          element vertex {}\nproperty float x\nproperty float y\nproperty float z\n{}\
          element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
+        frame.in_words(),
         mesh.vertices_mm().len(),
         property.unwrap_or_default(),
         mesh.triangles().len(),

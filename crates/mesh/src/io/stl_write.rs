@@ -10,21 +10,33 @@ use std::io::Write;
 use bonemesh_task::Task;
 use rayon::prelude::*;
 
-use super::BLOCK;
 use super::atomic::Fault;
+use super::{BLOCK, PatientFrame};
 use crate::TriangleMesh;
 
 /// Bytes of a triangle: normal, three corners, attribute.
 const RECORD: usize = 50;
 
-/// Says what made the file. Must not begin with `solid`, by which readers know ASCII.
-const HEADER: &[u8] = b"binary STL, millimetres, patient space LPS, made by Bonemesh";
+/// Says what made the file, in the 80 bytes that there are. Must not begin with `solid`, by which readers
+/// know ASCII.
+fn header(frame: PatientFrame) -> &'static [u8] {
+    match frame {
+        PatientFrame::Lps => b"binary STL, millimetres, patient space LPS, made by Bonemesh",
+        PatientFrame::Ras => b"binary STL, millimetres, patient space RAS, made by Bonemesh",
+    }
+}
 
 /// Writes the header, the count and all triangles; a block is encoded while the one before it is
 /// written.
-pub(super) fn write(file: &mut File, mesh: &TriangleMesh, task: &Task) -> Result<(), Fault> {
+pub(super) fn write(
+    file: &mut File,
+    mesh: &TriangleMesh,
+    frame: PatientFrame,
+    task: &Task,
+) -> Result<(), Fault> {
     let mut head = vec![0; 84];
-    head[..HEADER.len()].copy_from_slice(HEADER);
+    let header = header(frame);
+    head[..header.len()].copy_from_slice(header);
     head[80..].copy_from_slice(&(mesh.triangles().len() as u32).to_le_bytes());
     let (mut ready, mut next) = (head, Vec::new());
     for block in mesh.triangles().chunks(BLOCK) {

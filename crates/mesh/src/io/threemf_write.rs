@@ -8,7 +8,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
 use super::atomic::Fault;
-use super::{FRAME, text_blocks};
+use super::{PatientFrame, text_blocks};
 use crate::TriangleMesh;
 
 /// Where the model is in the archive, by custom and by our own relationship.
@@ -32,7 +32,12 @@ const MANY: usize = 20_000_000;
 /// equal bytes.
 ///
 /// Triangles with two equal vertices, which the format forbids, are left out.
-pub(super) fn write(file: &mut File, mesh: &TriangleMesh, task: &Task) -> Result<(), Fault> {
+pub(super) fn write(
+    file: &mut File,
+    mesh: &TriangleMesh,
+    frame: PatientFrame,
+    task: &Task,
+) -> Result<(), Fault> {
     task.begin("write", mesh.vertices_mm().len() + mesh.triangles().len());
     let mut archive = ZipWriter::new(BufWriter::new(file));
     let options = SimpleFileOptions::default()
@@ -50,12 +55,17 @@ pub(super) fn write(file: &mut File, mesh: &TriangleMesh, task: &Task) -> Result
     archive
         .start_file(MODEL, options)
         .map_err(io::Error::from)?;
-    write_model(&mut archive, mesh, task)?;
+    write_model(&mut archive, mesh, frame, task)?;
     archive.finish().map_err(io::Error::from)?.flush()?;
     Ok(())
 }
 
-fn write_model(file: &mut impl Write, mesh: &TriangleMesh, task: &Task) -> Result<(), Fault> {
+fn write_model(
+    file: &mut impl Write,
+    mesh: &TriangleMesh,
+    frame: PatientFrame,
+    task: &Task,
+) -> Result<(), Fault> {
     file.write_all(
         concat!(
             "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n",
@@ -65,7 +75,8 @@ fn write_model(file: &mut impl Write, mesh: &TriangleMesh, task: &Task) -> Resul
         )
         .as_bytes(),
     )?;
-    writeln!(file, "<metadata name=\"Description\">{FRAME}</metadata>")?;
+    let words = frame.in_words();
+    writeln!(file, "<metadata name=\"Description\">{words}</metadata>")?;
     file.write_all(b"<resources>\n<object id=\"1\" type=\"model\">\n<mesh>\n<vertices>\n")?;
     text_blocks::write(file, mesh.vertices_mm(), task, |vertex, text| {
         let [x, y, z] = vertex.map(|c| c as f32);

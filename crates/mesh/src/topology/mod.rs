@@ -9,6 +9,7 @@
 //! vertices can be looked at in parallel; all results are integers or fixed-order sums.
 
 mod components;
+mod faults;
 mod sets;
 mod vertex;
 
@@ -17,6 +18,7 @@ use rayon::prelude::*;
 
 use crate::vector::{cross, dot, minus};
 use crate::{MeshError, TriangleMesh};
+pub use faults::{Faults, find_faults};
 pub use sets::Sets;
 pub(crate) use vertex::Incidence;
 
@@ -82,7 +84,7 @@ pub fn check_topology(mesh: &TriangleMesh, task: &Task) -> Result<Topology, Mesh
         || vertex::inspect(&incidence, task),
         || components::count(mesh, &measures.sixfold_volumes, task),
     );
-    let (counts, components) = (counts?, components?);
+    let ((counts, _), components) = (counts?, components?);
     let watertight = counts.edges > 0 && counts.unbalanced_edges == 0;
     Ok(Topology {
         vertices: mesh.vertices_mm().len(),

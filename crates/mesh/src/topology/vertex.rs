@@ -3,6 +3,7 @@
 use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;
 
+use super::faults::Faults;
 use super::sets::Sets;
 use super::{STRIDE, is_collapsed};
 use crate::TriangleMesh;
@@ -81,23 +82,35 @@ impl Counts {
     }
 }
 
-/// Looks at every vertex.
-pub(super) fn inspect(incidence: &Incidence, task: &Task) -> Result<Counts, Cancelled> {
+/// Looks at every vertex: what there is, and where it is not as it should be.
+pub(super) fn inspect(incidence: &Incidence, task: &Task) -> Result<(Counts, Faults), Cancelled> {
     let vertices = incidence.vertices();
-    (0..vertices.div_ceil(STRIDE))
+    let chunks: Result<Vec<(Counts, Faults)>, Cancelled> = (0..vertices.div_ceil(STRIDE))
         .into_par_iter()
         .map(|chunk| {
             let range = chunk * STRIDE..vertices.min((chunk + 1) * STRIDE);
-            let mut counts = Counts::default();
+            let (mut counts, mut faults) = (Counts::default(), Faults::default());
             let mut spokes = Spokes::default();
             let done = range.len();
             for vertex in range {
-                spokes.count(vertex as u32, incidence.at(vertex), &mut counts);
+                spokes.count(
+                    vertex as u32,
+                    incidence.at(vertex),
+                    &mut counts,
+                    &mut faults,
+                );
             }
             task.advance(done)?;
-            Ok(counts)
+            Ok((counts, faults))
         })
-        .try_reduce(Counts::default, |a, b| Ok(a.plus(b)))
+        .collect();
+    let nothing = (Counts::default(), Faults::default());
+    Ok(chunks?
+        .into_iter()
+        .fold(nothing, |(sum, mut all), (counts, faults)| {
+            all.append(faults);
+            (sum.plus(counts), all)
+        }))
 }
 
 /// The edges at one vertex; kept from vertex to vertex to save allocations.
@@ -111,7 +124,13 @@ struct Spokes {
 
 impl Spokes {
     /// Adds what `vertex` with the triangles `others` shows.
-    fn count(&mut self, vertex: u32, others: &[[u32; 2]], counts: &mut Counts) {
+    fn count(
+        &mut self,
+        vertex: u32,
+        others: &[[u32; 2]],
+        counts: &mut Counts,
+        faults: &mut Faults,
+    ) {
         if others.is_empty() {
             return;
         }
@@ -136,8 +155,12 @@ impl Spokes {
                 counts.non_manifold_edges += usize::from(edge.len() > 2);
                 counts.inconsistent_edges += usize::from(edge.len() == 2 && away != 1);
                 counts.unbalanced_edges += usize::from(2 * away != edge.len());
+                faults.note_edge([vertex, edge[0].0], edge.len(), away);
             }
         }
-        counts.non_manifold_vertices += usize::from(fans > 1);
+        if fans > 1 {
+            counts.non_manifold_vertices += 1;
+            faults.non_manifold_vertices.push(vertex);
+        }
     }
 }

@@ -22,6 +22,7 @@ __all__ = [
     "Preview",
     "Scan",
     "Series",
+    "SlicePlane",
     "Volume",
     "__version__",
     "alpha_surface",
@@ -29,6 +30,7 @@ __all__ = [
     "check",
     "decimate",
     "face_outward",
+    "faults",
     "fill_cavities",
     "fill_holes",
     "find_series",
@@ -47,6 +49,7 @@ __all__ = [
     "render",
     "sample",
     "scan",
+    "section",
     "select_roi",
     "smooth",
     "suggest_thresholds",
@@ -63,6 +66,7 @@ _Path: TypeAlias = str | os.PathLike[str]
 _Progress: TypeAlias = Callable[[str, float], object]
 # Columns, rows, slices, each (first, end).
 _Crop: TypeAlias = str | Sequence[tuple[SupportsIndex, SupportsIndex]]
+_Anatomical: TypeAlias = Literal["axial", "coronal", "sagittal"]
 _Sampler: TypeAlias = Literal["uniform", "random", "thesis-uniform"]
 # A threshold in place of a number of Hounsfield units; 350 where none is given.
 _Threshold: TypeAlias = Literal[
@@ -196,8 +200,46 @@ class Volume:
     def patient_from_voxel(self) -> npt.NDArray[np.float64]: ...
     @property
     def spacing_mm(self) -> tuple[float, float, float]: ...
+    def plane(self, name: _Anatomical) -> SlicePlane: ...
+    # (rows, columns); the top row first.
+    @overload
+    def slice(
+        self,
+        name: _Anatomical,
+        position_mm: float,
+        *,
+        window_hu: None = None,
+        progress: _Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> npt.NDArray[np.float32]: ...
+    @overload
+    def slice(
+        self,
+        name: _Anatomical,
+        position_mm: float,
+        *,
+        window_hu: tuple[float, float],
+        progress: _Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> npt.NDArray[np.uint8]: ...
     @property
     def warnings(self) -> list[str]: ...
+
+@final
+class SlicePlane:
+    @property
+    def name(self) -> _Anatomical: ...
+    # (4, 4): (right, up, position, 1) in mm to patient millimetres.
+    @property
+    def patient_from_plane(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def pixel_mm(self) -> float: ...
+    @property
+    def shape(self) -> tuple[int, int]: ...
+    @property
+    def positions_mm(self) -> tuple[float, float]: ...
+    @property
+    def step_mm(self) -> float: ...
 
 @final
 class Histogram:
@@ -230,6 +272,8 @@ class Mesh:
         self,
         path: _Path,
         *,
+        frame: Literal["LPS", "RAS"] = "LPS",
+        sidecar: bool = False,
         progress: _Progress | None = None,
         cancel: Cancel | None = None,
     ) -> None: ...
@@ -560,6 +604,23 @@ def decimate(
     progress: _Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Mesh: ...
+def faults(
+    mesh: Mesh,
+    *,
+    thinner_than_mm: float | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> dict[str, npt.NDArray[np.uint32]]: ...
+
+# Lines (N, 3); a closed one ends where it begins.
+def section(
+    mesh: Mesh,
+    point: npt.ArrayLike,
+    normal: npt.ArrayLike,
+    *,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> list[npt.NDArray[np.float64]]: ...
 def wall_thickness(
     mesh: Mesh,
     *,
