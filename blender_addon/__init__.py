@@ -1,20 +1,50 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Bonemesh in Blender: bone meshes from CT images, and regions of interest cut out of them."""
 
+from types import ModuleType
+
 from . import library
+
+
+def parts() -> tuple[ModuleType, ...]:
+    """What is registered, in this order, where the compiled library loads."""
+    from . import (
+        directions,
+        export_panel,
+        operators,
+        output_properties,
+        panels,
+        previewing,
+        properties,
+        region_properties,
+        slice_properties,
+        slice_updates,
+        slices_panel,
+        views_panel,
+    )
+
+    return (
+        properties,
+        region_properties,
+        output_properties,
+        slice_properties,
+        slice_updates,
+        operators,
+        previewing,
+        panels,
+        views_panel,
+        slices_panel,
+        export_panel,
+        directions,
+    )
 
 
 def register() -> None:
     """Called by Blender when the add-on is enabled."""
     problem = library.problem()
     if problem is None:
-        from . import operators, panels, previewing, properties, region_properties
-
-        properties.register()
-        region_properties.register()
-        operators.register()
-        previewing.register()
-        panels.register()
+        for part in parts():
+            part.register()
     else:
         from . import panel_without_library
 
@@ -28,10 +58,5 @@ def unregister() -> None:
     if panel_without_library.is_registered():
         panel_without_library.unregister()
     else:
-        from . import operators, panels, previewing, properties, region_properties
-
-        panels.unregister()
-        previewing.unregister()
-        operators.unregister()
-        region_properties.unregister()
-        properties.unregister()
+        for part in reversed(parts()):
+            part.unregister()

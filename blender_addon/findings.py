@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What was done to a mesh and what a check found, in lines for the panel. Knows no bpy."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 Report = dict[str, Any]
 """What the library reports: the same keys as in its JSON."""
@@ -51,6 +51,81 @@ def after_care_lines(report: Report) -> list[str]:
             f"Not as few as {wanted:,}: no more could go without bending the surface too much"
         )
     return lines or ["Nothing had to be removed"]
+
+
+class Fault(NamedTuple):
+    """A kind of place that is not fit for printing."""
+
+    label: str
+    tooltip: str
+    counted_as: str
+    """What a check counts them as."""
+    domain: str
+    """What is selected in Edit Mode."""
+    noun: tuple[str, str]
+
+
+# By the names of the library's `faults`.
+FAULTS = {
+    "open_edges": Fault(
+        "Open Edges",
+        "Select the rims of holes in Edit Mode",
+        "boundary_edges",
+        "EDGE",
+        ("edge", "edges"),
+    ),
+    "non_manifold_edges": Fault(
+        "Edges of More than Two Faces",
+        "Select the edges along which parts touch in Edit Mode",
+        "non_manifold_edges",
+        "EDGE",
+        ("edge", "edges"),
+    ),
+    "non_manifold_vertices": Fault(
+        "Vertices of Several Parts",
+        "Select the vertices in which parts only touch in Edit Mode",
+        "non_manifold_vertices",
+        "VERT",
+        ("vertex", "vertices"),
+    ),
+    "inconsistent_edges": Fault(
+        "Edges of Turned Faces",
+        "Select the edges whose two faces face opposite ways in Edit Mode",
+        "inconsistent_edges",
+        "EDGE",
+        ("edge", "edges"),
+    ),
+    "intersecting_triangles": Fault(
+        "Self-Intersections",
+        "Select the triangles that pass through, overlap or touch one another in Edit Mode",
+        "intersecting_triangles",
+        "FACE",
+        ("triangle", "triangles"),
+    ),
+    "degenerate_triangles": Fault(
+        "Triangles without Area",
+        "Select the triangles that have no area in Edit Mode",
+        "degenerate_triangles",
+        "FACE",
+        ("triangle", "triangles"),
+    ),
+    "thin_vertices": Fault(
+        "Thin Walls",
+        "Select in Edit Mode where the wall is thinner than Thin Below",
+        "",
+        "VERT",
+        ("vertex", "vertices"),
+    ),
+}
+
+
+def faults_found(report: Report) -> dict[str, str]:
+    """The kinds of places that a check found, with what their buttons say."""
+    return {
+        kind: f"{fault.label} ({report[fault.counted_as]:,})"
+        for kind, fault in FAULTS.items()
+        if report.get(fault.counted_as)
+    }
 
 
 def verdict(report: Report) -> str:

@@ -93,6 +93,30 @@ class RegionInputs:
         return [self.output.with_stem(f"{self.name}-{number}") for number in numbers]
 
 
+@dataclass(frozen=True)
+class ExportInputs:
+    """A checked request for a file of a mesh."""
+
+    output: Path
+    frame: str
+
+    @classmethod
+    def read(
+        cls,
+        properties: Any,
+        mesh_directory: str,
+        object_name: str,
+        resolve: Callable[[str], str] = str,
+    ) -> ExportInputs:
+        """From `scene.bonemesh_output`; an object without a file's name goes by its own."""
+        directory = output_directory(resolve(mesh_directory))
+        name, ending = properties.file_name.strip(), f".{properties.format}"
+        if name.lower().endswith(ending):
+            name = name[: -len(ending)]
+        stem = file_stem(name or object_name, "Filename")
+        return cls(directory / f"{stem}{ending}", properties.frame)
+
+
 def region_options(
     properties: Any, view: tuple[float, float, float] | None
 ) -> dict[str, Any]:

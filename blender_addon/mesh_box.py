@@ -4,6 +4,7 @@
 from typing import Any
 
 from . import findings, scene
+from .operators.select_faults import BONEMESH_OT_select_faults
 from .text import draw_text
 
 
@@ -38,3 +39,22 @@ def draw_check(column: Any, context: Any, active: Any, checked: dict[str, Any]) 
         draw_text(column, context, reason, icon="ERROR")
     for line in findings.check_lines(checked):
         draw_text(column, context, line, icon="DOT")
+    draw_places(column, context, checked)
+
+
+def draw_places(column: Any, context: Any, checked: dict[str, Any]) -> None:
+    """Draws the buttons that select what was found, and thin walls where walls were measured."""
+    for kind, text in findings.faults_found(checked).items():
+        draw_select(column, kind, f"Select {text}")
+    if checked.get("thinnest_wall_mm") is not None:
+        row = column.row(align=True)
+        draw_select(row, "thin_vertices", "Select Thin Walls")
+        row.prop(context.scene.bonemesh_output, "thin_mm", text="Below (mm)")
+
+
+def draw_select(layout: Any, kind: str, text: str) -> None:
+    """Draws the button of one kind."""
+    button = layout.operator(
+        BONEMESH_OT_select_faults.bl_idname, text=text, icon="RESTRICT_SELECT_OFF"
+    )
+    button.kind = kind

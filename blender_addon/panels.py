@@ -23,6 +23,10 @@ from .operators.measure_thickness import BONEMESH_OT_measure_thickness
 from .operators.mirror_roi import BONEMESH_OT_mirror_roi
 from .operators.plane_from_vertices import BONEMESH_OT_plane_from_vertices
 from .operators.remove_crop_box import BONEMESH_OT_remove_crop_box
+from .operators.render_again import (
+    BONEMESH_OT_read_sidecar,
+    BONEMESH_OT_render_again,
+)
 from .operators.render_surface_mesh import BONEMESH_OT_render_surface_mesh
 from .operators.resume_roi import BONEMESH_OT_resume_roi
 from .operators.select_roi import BONEMESH_OT_select_roi
@@ -59,6 +63,9 @@ class BONEMESH_PT_segment_ct(Panel):
         column.prop(properties, "mesh_directory", text="")
         memory_box.draw(column, context)
         column.operator(BONEMESH_OT_render_surface_mesh.bl_idname)
+        row = column.row(align=True)
+        row.operator(BONEMESH_OT_render_again.bl_idname)
+        row.operator(BONEMESH_OT_read_sidecar.bl_idname, text="", icon="FILE_FOLDER")
 
         column = layout.column()
         column.label(text="Segmented Mesh Filename")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The only writer of Blender's data: meshes into objects, units, clipping, selection."""
+"""The only writer of Blender's data, with its sisters scene_slices.py and scene_materials.py: meshes into objects, units, clipping, selection."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ import numpy as np
 from mathutils import Matrix, Vector
 from numpy.typing import NDArray
 
+from . import scene_materials
 from .findings import of_rendering
 from .inputs import RefusalError
+from .scene_materials import BONE_COLOUR, REGION_COLOUR
 from .selection import CENTRE_MM, PATIENT_MM, Source, relative_to
 
 if TYPE_CHECKING:
@@ -27,6 +29,8 @@ CLIP_END_MM = 20_000.0
 # Keys of the reports kept with an object, and in that of a check, of what the object was then.
 AFTER_CARE = "after_care"
 CHECK = "check"
+# How a bone was rendered: the keyword arguments of the library's `render`.
+OPTIONS = "options"
 STATE = "state"
 
 REGIONS = "Regions of Interest"
@@ -40,8 +44,6 @@ REGION_OPTIONS = (
     "mirror",
     "mirror_back",
 )
-BONE_COLOUR = (0.86, 0.80, 0.68, 1.0)
-REGION_COLOUR = (0.85, 0.25, 0.10, 1.0)
 
 
 def use_millimetres(context: Any) -> None:
@@ -72,6 +74,7 @@ def add_bone(
     keep(placed, "threshold_hu", report["threshold_hu"])
     keep(placed, "series_uid", report["series_uid"])
     keep(placed, "spacing_mm", report["spacing_mm"])
+    keep_report(placed, OPTIONS, report["options"])
     keep_report(placed, AFTER_CARE, of_rendering(report))
     context.view_layer.update()
     return placed
@@ -104,6 +107,13 @@ def add_region(
     for key in REGION_OPTIONS:
         keep(placed, key, options.get(key))
     return placed
+
+
+def kept_facts(bone: Any) -> dict[str, Any]:
+    """How a bone was rendered, by the names that the library's report has."""
+    keys = ("version", "method", "threshold_hu", "series_uid")
+    facts = {key: bone.get(f"bonemesh_{key}") for key in keys}
+    return {**facts, OPTIONS: kept_report(bone, OPTIONS)}
 
 
 def source_of(region: Any) -> Any:
@@ -153,6 +163,42 @@ def select_vertices(context: Any, placed: Any, vertices: list[int]) -> None:
     data.edges.foreach_set("select", is_selected[ends].reshape(-1, 2).all(axis=1))
     data.polygons.foreach_set("select", faces)
     context.tool_settings.mesh_select_mode = (True, False, False)
+
+
+def select_elements(
+    context: Any, placed: Any, domain: str, numbers: NDArray[np.uint32]
+) -> None:
+    """These vertices, edges (as pairs of vertices) or triangles of an object that is not in Edit Mode, alone.
+
+    `domain` is "VERT", "EDGE" or "FACE"; of triangles of a larger face, the face.
+    """
+    data = placed.data
+    is_vertex = np.zeros(len(data.vertices), dtype=bool)
+    is_edge = np.zeros(len(data.edges), dtype=bool)
+    is_face = np.zeros(len(data.polygons), dtype=bool)
+    if domain == "VERT":
+        is_vertex[numbers] = True
+    elif domain == "EDGE":
+        ends = np.empty(2 * len(data.edges), dtype=np.int32)
+        data.edges.foreach_get("vertices", ends)
+        low_high = np.sort(ends.reshape(-1, 2), axis=1).astype(np.uint64)
+        key = np.array([len(data.vertices), 1], dtype=np.uint64)
+        is_edge = np.isin(low_high @ key, numbers.astype(np.uint64) @ key)
+        is_vertex[numbers.ravel()] = True
+    else:
+        data.calc_loop_triangles()
+        faces = np.empty(len(data.loop_triangles), dtype=np.int32)
+        data.loop_triangles.foreach_get("polygon_index", faces)
+        corners = np.empty(3 * len(faces), dtype=np.int32)
+        data.loop_triangles.foreach_get("vertices", corners)
+        is_face[faces[numbers]] = True
+        is_vertex[corners.reshape(-1, 3)[numbers]] = True
+    data.vertices.foreach_set("select", is_vertex)
+    data.edges.foreach_set("select", is_edge)
+    data.polygons.foreach_set("select", is_face)
+    context.tool_settings.mesh_select_mode = tuple(
+        domain == each for each in ("VERT", "EDGE", "FACE")
+    )
 
 
 def regions(context: Any) -> Any:
@@ -210,7 +256,8 @@ def add_object(
     fill(data, relative_to(vertices, centre), mesh.triangles)
     exact = data.attributes.new(PATIENT_MM, "FLOAT_VECTOR", "POINT")
     exact.data.foreach_set("vector", vertices.ravel())
-    data.materials.append(viewport_material(material, colour))
+    data.materials.append(scene_materials.material(material, colour))
+    scene_materials.shade(data)
     placed = bpy.data.objects.new(name, data)
     placed.matrix_world = Matrix.Translation(Vector(centre))
     placed[CENTRE_MM] = centre.tolist()
@@ -240,16 +287,6 @@ def fill(
         attribute = data.attributes.get(selection)
         if attribute is not None:
             data.attributes.remove(attribute)
-
-
-def viewport_material(name: str, colour: tuple[float, ...]) -> Any:
-    """The shared material of that name, in `colour` when it is new."""
-    material = bpy.data.materials.get(name)
-    if material is None:
-        material = bpy.data.materials.new(name)
-        material.diffuse_color = colour
-        material.roughness = 0.6
-    return material
 
 
 def link(context: Any, placed: Any, collection: Any) -> None:

@@ -82,18 +82,19 @@ def read_with_selection(active: Any) -> Source:
     return source
 
 
-def as_exported(active: Any, depsgraph: Any) -> Source:
-    """What a file of the object would hold: with its modifiers and its size.
+def as_exported(active: Any, depsgraph: Any, *, as_placed: bool = False) -> Source:
+    """What a file of the object would hold: with its size and, with `depsgraph`, its modifiers.
 
     A mesh that was at most moved and turned keeps its exact coordinates in the patient, which do not
-    change what it is as a body.
+    change what it is as a body; unless it is asked for `as_placed` in the world.
     """
     source = read(active, depsgraph)
     matrix = np.asarray(source.world_from_patient, dtype=np.float64)
     linear = matrix[:3, :3]
     vertices, faces = source.vertices, source.triangles
     is_mirrored = active.matrix_world.is_negative
-    if is_mirrored or not np.allclose(linear @ linear.T, np.eye(3), atol=1e-5):
+    is_rigid = np.allclose(linear @ linear.T, np.eye(3), atol=1e-5)
+    if as_placed or is_mirrored or not is_rigid:
         world = vertices.astype(np.float64) @ linear.T + matrix[:3, 3]
         vertices = world.astype(np.float32)
     if is_mirrored:  # Blender turns the faces of such an object round as it shows it

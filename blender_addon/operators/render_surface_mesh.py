@@ -61,7 +61,10 @@ class BONEMESH_OT_render_surface_mesh(BackgroundOperator, Operator):
             )
             job.stop_if_cancelled()
             mesh.save(
-                inputs.output, progress=job.note_progress, cancel=job.cancel_token
+                inputs.output,
+                sidecar=True,
+                progress=job.note_progress,
+                cancel=job.cancel_token,
             )
             return mesh
 

@@ -61,7 +61,7 @@ class RegionOperator(OnSelection, BackgroundOperator):
                 regions, inputs.outputs(len(regions)), strict=True
             ):
                 job.stop_if_cancelled()
-                region.save(output, **watched)
+                region.save(output, sidecar=True, **watched)
             return regions
 
         return Job(self.title, work)

@@ -20,7 +20,7 @@ def test_a_job_that_ends_puts_its_mesh_into_the_scene(answers: dict[str, Any]) -
     finished = answers["finished"]
     assert finished["end"] == ["FINISHED"]
     assert finished["objects"] == ["bone"]
-    assert finished["files"] == ["bone.stl"]
+    assert finished["files"] == ["bone.stl", "bone.stl.json"]
     assert finished["timers"] == 0
     assert [kind for kind, _ in finished["reports"]] == ["INFO"]
 

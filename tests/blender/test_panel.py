@@ -17,6 +17,8 @@ FIELDS = [
     "Select File Location to Save Mesh",
     "[mesh_directory]",
     "Render Surface Mesh",
+    "Render Again",
+    "Settings from File",
     "Segmented Mesh Filename",
     "[roi_name]",
     "Select Region of Interest",

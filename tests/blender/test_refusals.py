@@ -71,4 +71,4 @@ def test_every_refusal_is_looked_at(refusals: dict[str, str]) -> None:
 
 def test_a_refused_request_leaves_no_file(refusals: dict[str, str]) -> None:
     assert refusals["files after the refused renderings"] == ""
-    assert refusals["files after the refused regions"] == "bone.stl"
+    assert refusals["files after the refused regions"] == "bone.stl, bone.stl.json"

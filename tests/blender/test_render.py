@@ -25,7 +25,7 @@ def test_the_operator_gives_the_same_mesh_as_the_api(
     assert not got["selected"].any()
 
     expected.save(tmp_path / "api.stl")
-    assert answer["files"] == ["bone.stl"]
+    assert answer["files"] == ["bone.stl", "bone.stl.json"]
     assert (blender.out / "bone.stl").read_bytes() == (
         tmp_path / "api.stl"
     ).read_bytes()

@@ -20,6 +20,12 @@ def install(path: str) -> None:
     )
 
 
+def clear_scene() -> None:
+    """Takes the cube away that a new file begins with: it would be the active mesh."""
+    for placed in tuple(bpy.data.objects):
+        bpy.data.objects.remove(placed)
+
+
 def fill_panel(ct: str, out: str, **fields: Any) -> Any:
     """Sets every field that a rendering needs, and those named."""
     properties = bpy.context.scene.bonemesh
