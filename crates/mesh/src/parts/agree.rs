@@ -101,7 +101,7 @@ impl Sheets {
                 }
                 for &(there, agree) in neighbours.at(here) {
                     let there = there as usize;
-                    let is_against = sheets.is_against[here] != !agree;
+                    let is_against = sheets.is_against[here] == agree;
                     if sheets.of_triangles[there] == u32::MAX {
                         sheets.of_triangles[there] = sheet;
                         sheets.is_against[there] = is_against;

@@ -55,7 +55,7 @@ impl Parts<'_> {
         let faces_inward = |part: usize| self.known[part].volume_mm3 < 0.0;
         let is_closed = around.iter().all(|part| self.known[*part].is_closed);
         // The outermost outward, in it inward, in that outward, and so on.
-        let is_to_face_inward = around.len() % 2 == 0;
+        let is_to_face_inward = around.len().is_multiple_of(2);
         is_closed && faces_inward(outermost) && faces_inward(part) != is_to_face_inward
     }
 }
