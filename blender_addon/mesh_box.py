@@ -47,9 +47,8 @@ def draw_places(column: Any, context: Any, checked: dict[str, Any]) -> None:
     for kind, text in findings.faults_found(checked).items():
         draw_select(column, kind, f"Select {text}")
     if checked.get("thinnest_wall_mm") is not None:
-        row = column.row(align=True)
-        draw_select(row, "thin_vertices", "Select Thin Walls")
-        row.prop(context.scene.bonemesh_output, "thin_mm", text="Below (mm)")
+        column.prop(context.scene.bonemesh_output, "thin_mm")
+        draw_select(column, "thin_vertices", "Select Thin Walls")
 
 
 def draw_select(layout: Any, kind: str, text: str) -> None:

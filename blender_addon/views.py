@@ -13,7 +13,7 @@ from .patient import Side
 
 # What a 3D view's lens sees at its distance: twice a sensor of 36 mm.
 SEEN_MM = 72.0
-FILLS = 0.8  # of the view: letters and panels stand around the bone
+FILLS = 0.7  # of what is free of the view: letters stand around the bone
 
 
 def rotation(placed: Any, side: Side) -> Quaternion:
@@ -24,9 +24,24 @@ def rotation(placed: Any, side: Side) -> Quaternion:
     return turn @ seen.to_quaternion()
 
 
-def look(placed: Any, side: Side, space: Any, width_px: int, height_px: int) -> None:
-    """Turns a 3D view to the patient's side, without perspective, and fits the object into it."""
+def covered_px(area: Any) -> tuple[int, int]:
+    """How much of a 3D view lies under the toolbar on its left and the sidebar on its right."""
+    main = next(r for r in area.regions if r.type == "WINDOW")
+    widths = {
+        r.type: r.width if r.x < main.x + main.width and r.x + r.width > main.x else 0
+        for r in area.regions
+        if r.width > 1
+    }
+    return widths.get("TOOLS", 0), widths.get("UI", 0)
+
+
+def look(placed: Any, side: Side, area: Any) -> None:
+    """Turns a 3D view to the patient's side, without perspective, and fits the object into what is free of it."""
+    space = area.spaces.active
     view = space.region_3d
+    region = next(r for r in area.regions if r.type == "WINDOW")
+    left_px, right_px = covered_px(area)
+    free_px = max(region.width - left_px - right_px, region.width // 4, 1)
     turned = rotation(placed, side)
     corners, world_from_patient = patient.box(placed)
     places = [
@@ -39,8 +54,11 @@ def look(placed: Any, side: Side, space: Any, width_px: int, height_px: int) -> 
     )
     sides = highest - lowest
     # Millimetres that a pixel must show, for the tighter of the two sides.
-    mm = max(sides.x / max(width_px, 1), sides.y / max(height_px, 1)) / FILLS
+    mm = max(sides.x / free_px, sides.y / max(region.height, 1)) / FILLS
+    middle = (lowest + highest) / 2.0
+    middle.x += mm * (right_px - left_px) / 2.0
     view.view_perspective = "ORTHO"
     view.view_rotation = turned
-    view.view_location = turned @ ((lowest + highest) / 2.0)
-    view.view_distance = max(mm * max(width_px, height_px) * space.lens / SEEN_MM, 1.0)
+    view.view_location = turned @ middle
+    longer_px = max(region.width, region.height)
+    view.view_distance = max(mm * longer_px * space.lens / SEEN_MM, 1.0)

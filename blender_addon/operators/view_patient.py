@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """bonemesh.view_patient: the bone as seen from one of the patient's sides."""
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from bpy.props import EnumProperty
 from bpy.types import Context, Operator, OperatorProperties
@@ -52,8 +52,6 @@ class BONEMESH_OT_view_patient(Operator):
         here = context.area
         areas = [area for _, area in window.views(context)]
         for area in [here] if here in areas else areas:
-            region = next(r for r in area.regions if r.type == "WINDOW")
-            space: Any = area.spaces.active
-            views.look(placed, SIDES[self.side], space, region.width, region.height)
+            views.look(placed, SIDES[self.side], area)
             area.tag_redraw()
         return {"FINISHED"}

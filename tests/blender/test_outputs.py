@@ -72,7 +72,7 @@ def test_a_whole_mesh_has_no_places_and_stays_as_it_is(run: dict[str, Any]) -> N
     whole = run["faults"]["whole"]
     assert (whole["result"], whole["mode"]) == (["FINISHED"], "OBJECT")
     text = " ".join(run["faults"]["whole box"])
-    assert "Select Thin Walls Below (mm) [thin_mm]" in text
+    assert "Thin Below (mm) [thin_mm] Select Thin Walls" in text
     assert "Select Open Edges" not in text
 
 

@@ -24,6 +24,7 @@ def seen(placed: Any) -> dict[str, Any]:
     area = view()
     space = area.spaces.active
     region = next(r for r in area.regions if r.type == "WINDOW")
+    left_px, right_px = import_module(f"{stage.MODULE}.views").covered_px(area)
     answer = {}
     for side in SIDES:
         assert bpy.ops.bonemesh.view_patient(side=side) == {"FINISHED"}
@@ -38,18 +39,18 @@ def seen(placed: Any) -> dict[str, Any]:
             for c in placed.bound_box
         ]
         spread = np.ptp(np.array(corners), axis=0).tolist()
+        middle = sum(corners, Vector()) / 8
+        off = turn.inverted() @ r3d.view_location - middle
         answer[side] = {
             "right": right,
             "up": up,
             "looks": looks,
             "fills": [
-                spread[0] / mm / region.width,
+                spread[0] / mm / (region.width - left_px - right_px),
                 spread[1] / mm / region.height,
             ],
             "perspective": r3d.view_perspective,
-            "off": list(
-                turn.inverted() @ r3d.view_location - sum(corners, Vector()) / 8
-            )[:2],
+            "off": [off[0] / mm - (right_px - left_px) / 2.0, off[1] / mm],
         }
     return answer
 
