@@ -25,12 +25,11 @@ from .scan_ct_directory import BONEMESH_OT_scan_ct_directory
 from .select_faults import BONEMESH_OT_select_faults
 from .select_roi import BONEMESH_OT_select_roi
 from .show_crop_box import BONEMESH_OT_show_crop_box
+from .show_slices import BONEMESH_OT_show_slices
 from .start_lasso import BONEMESH_OT_start_lasso
 from .stop_scan import BONEMESH_OT_stop_scan
 from .use_crop_box import BONEMESH_OT_use_crop_box
 from .use_threshold import BONEMESH_OT_use_threshold
-from .show_slices import BONEMESH_OT_show_slices
-from .stop_scan import BONEMESH_OT_stop_scan
 from .view_patient import BONEMESH_OT_view_patient
 
 CLASSES = (

@@ -123,7 +123,9 @@ def table_similarity() -> Table:
 def state(mesh: bonemesh.Mesh) -> str:
     """What a mesh is, in a few words."""
     report = bonemesh.check(mesh)
-    kind = "closed" if report["watertight"] else f"{report['boundary_edges']:,} open edges"
+    kind = (
+        "closed" if report["watertight"] else f"{report['boundary_edges']:,} open edges"
+    )
     parts = report["components"]
     return f"{kind}, {parts:,} {'part' if parts == 1 else 'parts'}"
 
