@@ -59,6 +59,43 @@ def test_a_triangle_that_faces_the_wrong_way_is_turned_first(shell, cap):
     assert solid.report["volume_mm3"] == pytest.approx(sound.report["volume_mm3"])
 
 
+@pytest.mark.parametrize(
+    "direction", ["normal", "through", "outward", (-1.0, 0.0, 0.0)]
+)
+@pytest.mark.parametrize("turned", ["all", "every seventh"])
+def test_a_mesh_that_faces_the_wrong_way_is_turned_first(shell, cap, turned, direction):
+    wrong = shell.triangles.copy()
+    which = slice(None) if turned == "all" else slice(None, None, 7)
+    wrong[which] = wrong[which, ::-1]
+    options = {"thickness_mm": 3, "direction": direction}
+    solid = bonemesh.select_roi(bonemesh.Mesh(shell.vertices, wrong), cap, **options)
+    certificate(solid)
+    assert solid.report["turned_triangles"] == len(wrong[which])
+    sound = bonemesh.select_roi(shell, cap, **options)
+    assert solid.report["volume_mm3"] == pytest.approx(
+        sound.report["volume_mm3"], rel=1e-3
+    )
+
+
+def test_an_inside_out_mesh_with_a_hole_is_closed_and_turned(shell):
+    torn = bonemesh.Mesh(shell.vertices, shell.triangles[5:, ::-1])
+    whole = bonemesh.face_outward(bonemesh.fill_holes(torn))
+    assert bonemesh.check(whole)["printable"]
+
+
+def test_mirrored_pieces_of_both_sides_are_both_cut(shell, cap):
+    radius = np.linalg.norm(shell.vertices, axis=1)
+    outer = radius > MIDDLE
+    front = np.flatnonzero(outer & (shell.vertices[:, 1] < -0.95 * radius))
+    options = {"thickness_mm": 3, "mirror": "x"}
+    apart = [bonemesh.select_roi(shell, part, **options) for part in (cap, front)]
+    both = bonemesh.select_roi(shell, np.union1d(cap, front), **options)
+    certificate(both)
+    volume = sum(solid.report["volume_mm3"] for solid in apart)
+    assert both.report["volume_mm3"] == pytest.approx(volume, rel=1e-6)
+    assert both.report["dropped_pieces"] == 0
+
+
 def test_directions(shell, cap):
     middle = np.linalg.norm(shell.vertices[cap], axis=1).mean()
     plate = bonemesh.select_roi(

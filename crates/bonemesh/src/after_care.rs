@@ -152,6 +152,12 @@ pub fn care_for(
             at_most_edges: None,
         };
         mesh = report.with_lids(fill_holes(&mesh, limits, task)?);
+        if care.face_outward {
+            // Of an open part it is not known which way is out.
+            let faced = face_outward(&mesh, task)?;
+            report.turned_triangles = report.turned_triangles.max(Some(faced.turned));
+            mesh = faced.mesh;
+        }
     }
     if let Some(islands) = &care.islands {
         let had_triangles = !mesh.triangles().is_empty();

@@ -209,7 +209,7 @@ fn reasons(topology: &Topology, found: &Intersections, nesting: Nesting) -> Vec<
         topology.boundary_edges,
         "open edge: the surface has a hole",
         "open edges: the surface has holes",
-        "fill them (in Blender: Mesh > Clean Up > Fill Holes)",
+        "fill them (bonemesh repair --fill-holes all; in Blender: Mesh > Clean Up > Fill Holes)",
     );
     add(
         topology.non_manifold_edges,

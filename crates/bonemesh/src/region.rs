@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use bonemesh_mesh::{HoleLimits, TriangleMesh, face_outward, fill_holes};
 use bonemesh_roi::{
-    ClearanceMm, Direction, Method, RoiError, Solid, SolidRequest, ThicknessMm, counterpart,
+    ClearanceMm, Direction, Method, RoiError, Solid, SolidRequest, ThicknessMm, counterparts,
     select_region, select_solid, select_solids,
 };
 use bonemesh_task::{Task, pool};
@@ -165,27 +165,58 @@ fn solids(
     is_each: bool,
     task: &Task,
 ) -> Result<Vec<(TriangleMesh, SolidReport)>, Error> {
-    let mut solid_request = SolidRequest {
+    let solid_request = SolidRequest {
         thickness: request.thickness,
         direction: request.direction,
         clearance: request.clearance,
         with_hidden: request.with_hidden,
     };
-    let Some(mirror) = request.mirror else {
-        let (solids, mended) = with_mesh_mended(mesh, selected, &solid_request, is_each, task)?;
-        let solids = solids.into_iter();
-        return Ok(solids
-            .map(|solid| SolidReport::of(solid, mended, None))
-            .collect());
+    if let Some(mirror) = request.mirror {
+        let how = (request.threads, is_each);
+        return opposite_solids(mesh, selected, solid_request, mirror, how, task);
+    }
+    let (solids, mended) = with_mesh_mended(mesh, selected, &solid_request, is_each, task)?;
+    let solids = solids.into_iter();
+    Ok(solids
+        .map(|solid| SolidReport::of(solid, mended, None))
+        .collect())
+}
+
+/// The solids of the other side's counterpart of the selection, each of its sides cut on its own.
+fn opposite_solids(
+    mesh: &TriangleMesh,
+    selected: &[u32],
+    mut request: SolidRequest,
+    mirror: Mirror,
+    (threads, is_each): (Option<NonZeroUsize>, bool),
+    task: &Task,
+) -> Result<Vec<(TriangleMesh, SolidReport)>, Error> {
+    // Which side is the other, and which way is out there, is told by what triangles face.
+    let faced = face_outward(mesh, task)?;
+    let selected = match faced.turned {
+        0 => selected.to_vec(),
+        _ => renumbered(selected, mesh, &faced.mesh),
     };
-    let chosen = mirror.plane.choose(mesh, request.threads, task)?;
+    let mesh = if faced.turned == 0 { mesh } else { &faced.mesh };
+    let chosen = mirror.plane.choose(mesh, threads, task)?;
     // What is given for the selection's side is mirrored for the other.
     if let Direction::Along(direction) = request.direction {
-        solid_request.direction = Direction::along(chosen.plane.mirrored_direction(direction))?;
+        request.direction = Direction::along(chosen.plane.mirrored_direction(direction))?;
     }
-    let other = counterpart(mesh, selected, &chosen.plane, task)?;
-    let (solids, mended) = with_mesh_mended(mesh, &other, &solid_request, is_each, task)?;
+    let found = counterparts(mesh, &selected, &chosen.plane, task)?;
+    let mut solids = Vec::new();
+    let mut mended = Mended::default();
+    for side in &found.sides {
+        let (cut, done) = with_mesh_mended(mesh, side, &request, is_each, task)?;
+        solids.extend(cut);
+        mended = done;
+    }
+    mended.turned_triangles += faced.turned;
+    if !is_each {
+        solids = joined(solids)?.into_iter().collect();
+    }
     let placed = |mut solid: Solid| {
+        solid.dropped += found.missing;
         if mirror.back {
             solid.mesh = solid.mesh.mirrored(&chosen.plane);
         }
@@ -194,8 +225,33 @@ fn solids(
     Ok(solids.into_iter().map(placed).collect())
 }
 
-/// Cuts; where the surface is open or does not face one way, joins vertices at one place, turns triangles over
-/// and fills the holes first. Gives what of this was done.
+/// Several solids as one; `None` of none.
+fn joined(solids: Vec<Solid>) -> Result<Option<Solid>, Error> {
+    let mut solids = solids.into_iter();
+    let Some(mut first) = solids.next() else {
+        return Ok(None);
+    };
+    let (mut vertices_mm, mut triangles) = std::mem::take(&mut first.mesh).into_parts();
+    for solid in solids {
+        first.selected += solid.selected;
+        first.patch_mm2 += solid.patch_mm2;
+        first.dropped += solid.dropped;
+        first.closed += solid.closed;
+        first.gap_mm = [first.gap_mm, solid.gap_mm]
+            .into_iter()
+            .flatten()
+            .reduce(f64::min);
+        let next = vertices_mm.len() as u32;
+        let (places, corners) = solid.mesh.into_parts();
+        vertices_mm.extend(places);
+        triangles.extend(corners.into_iter().map(|t| t.map(|v| next + v)));
+    }
+    first.mesh = TriangleMesh::new(vertices_mm, triangles)?;
+    Ok(Some(first))
+}
+
+/// Cuts; where that fails as it does on a surface that is open or does not face outward, joins vertices at one
+/// place, turns triangles over and fills the holes first. Gives what of this was done.
 fn with_mesh_mended(
     mesh: &TriangleMesh,
     selected: &[u32],
@@ -210,19 +266,29 @@ fn with_mesh_mended(
             Ok(vec![select_solid(mesh, selected, request, task)?])
         }
     };
-    match cut(mesh, selected) {
-        Err(RoiError::Open) => {
-            let faced = face_outward(mesh, task)?;
-            let filled = fill_holes(&faced.mesh, HoleLimits::default(), task)?;
-            let mended = Mended {
-                turned_triangles: faced.turned,
-                filled_holes: filled.filled,
-            };
-            let selected = renumbered(selected, mesh, &filled.mesh);
-            Ok((cut(&filled.mesh, &selected)?, mended))
-        }
-        solids => Ok((solids?, Mended::default())),
+    let failed = match cut(mesh, selected) {
+        Err(error @ (RoiError::Open | RoiError::NothingCut | RoiError::FacesAway)) => error,
+        solids => return Ok((solids?, Mended::default())),
+    };
+    let (whole, mended) = mended(mesh, task)?;
+    if mended == Mended::default() && !matches!(failed, RoiError::Open) {
+        return Err(failed.into());
     }
+    let selected = renumbered(selected, mesh, &whole);
+    Ok((cut(&whole, &selected)?, mended))
+}
+
+/// Turned to face outward, and without holes.
+fn mended(mesh: &TriangleMesh, task: &Task) -> Result<(TriangleMesh, Mended), Error> {
+    let faced = face_outward(mesh, task)?;
+    let filled = fill_holes(&faced.mesh, HoleLimits::default(), task)?;
+    // Of an open part it is not known which way is out.
+    let closed = face_outward(&filled.mesh, task)?;
+    let mended = Mended {
+        turned_triangles: faced.turned.max(closed.turned),
+        filled_holes: filled.filled,
+    };
+    Ok((closed.mesh, mended))
 }
 
 /// The vertices of another mesh that lie where these of the first do, in the 32-bit coordinates of files.

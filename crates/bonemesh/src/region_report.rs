@@ -125,13 +125,16 @@ pub struct SolidReport {
     pub turned_triangles: usize,
     /// Holes of the mesh that were filled first.
     pub filled_holes: usize,
+    /// How near a plate comes to the bone (mm), if nearer than its clearance.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gap_mm: Option<f64>,
     /// The plane between the sides, if the other side's counterpart was taken.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mirror: Option<PlaneReport>,
 }
 
 /// What was done to the mesh before a solid was cut.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Mended {
     pub(crate) turned_triangles: usize,
     pub(crate) filled_holes: usize,
@@ -153,6 +156,7 @@ impl SolidReport {
             closed_gaps: solid.closed,
             turned_triangles: mended.turned_triangles,
             filled_holes: mended.filled_holes,
+            gap_mm: solid.gap_mm,
             mirror,
         };
         (solid.mesh, report)

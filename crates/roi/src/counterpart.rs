@@ -25,17 +25,29 @@ const SAME_SIDE: f64 = 0.5;
 /// How much deeper or higher (mm) than the selection the other side may be.
 const UNEVEN_MM: f64 = 10.0;
 
-/// The vertices of `mesh` whose mirror images lie where the `selected` ones do, ascending.
+/// What lies on the other side.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Counterparts {
+    /// The vertices opposite to each part of the selection that faces about one way, ascending.
+    pub sides: Vec<Vec<u32>>,
+    /// Such parts that nothing lies opposite to.
+    pub missing: usize,
+}
+
+/// The vertices of `mesh` whose mirror images lie where the `selected` ones do.
+///
+/// Pieces of the selection that face other ways are looked at on their own, so that each is cut on its own.
+/// The triangles of `mesh` must face outward ([`bonemesh_mesh::face_outward`]).
 ///
 /// # Errors
 /// [`RoiError::NoFace`] for a selection without a triangle, [`RoiError::NoCounterpart`] where the other side
-/// has nothing there, or the work was cancelled.
-pub fn counterpart(
+/// has nothing at all there, or the work was cancelled.
+pub fn counterparts(
     mesh: &TriangleMesh,
     selected: &[u32],
     plane: &Plane,
     task: &Task,
-) -> Result<Vec<u32>, RoiError> {
+) -> Result<Counterparts, RoiError> {
     let selection = &Selection::new(selected, mesh.vertices_mm().len())?;
     let is_whole = |t: &&[u32; 3]| t.iter().all(|v| selection.contains(*v));
     let patch: Vec<[u32; 3]> = mesh.triangles().iter().filter(is_whole).copied().collect();
@@ -44,13 +56,20 @@ pub fn counterpart(
             selected: selection.indices().len(),
         });
     }
-    let mut found = Vec::new();
+    let mut found = Counterparts {
+        sides: Vec::new(),
+        missing: 0,
+    };
     for side in sides(mesh, patch) {
-        found.extend(side.opposite(mesh, plane, task)?);
+        let mut opposite = side.opposite(mesh, plane, task)?;
+        opposite.sort_unstable();
+        if opposite.len() < 3 {
+            found.missing += 1;
+        } else {
+            found.sides.push(opposite);
+        }
     }
-    found.sort_unstable();
-    found.dedup();
-    if found.len() < 3 {
+    if found.sides.is_empty() {
         return Err(RoiError::NoCounterpart);
     }
     Ok(found)

@@ -115,12 +115,12 @@ pub enum RoiError {
     Open,
     /// Nothing lies below the patch.
     #[error(
-        "nothing lies below the selection; select a patch of the outer side, and check that the surface is not inside out (bonemesh check)"
+        "nothing lies below the selection; select a patch of the outer side, and see whether the surface is open or inside out (bonemesh check; bonemesh repair mends that)"
     )]
     NothingCut,
     /// What is left touches itself, whatever is tried.
     #[error(
-        "the solid would touch itself after {tries} tries; check the surface near the selection (bonemesh check), or select a little more or less"
+        "the solid would touch itself after {tries} tries; check the surface near the selection (bonemesh check), select a little more or less, or move a mesh that lies metres away from the origin nearer to it"
     )]
     NoSound {
         /// How often it was tried.

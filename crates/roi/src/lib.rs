@@ -43,7 +43,7 @@ mod thesis;
 mod thickness;
 mod vector;
 
-pub use counterpart::counterpart;
+pub use counterpart::{Counterparts, counterparts};
 pub use direction::Direction;
 pub use error::RoiError;
 pub use local_thickness::{LocalThickness, local_thickness};

@@ -288,9 +288,11 @@ fn solid_notes(solid: &SolidReport) -> String {
         ),
     ];
     let counts = counts.iter().filter(|(count, _, _)| *count > 0);
+    let gap = solid.gap_mm.iter();
     let mirror = solid.mirror.iter();
     let lines: Vec<String> = counts
         .map(|&(count, [one, many], what)| format!("  {} {what}\n", counted(count, one, many)))
+        .chain(gap.map(|gap| format!("  comes as near to the bone as {gap:.2} mm\n")))
         .chain(mirror.map(|m| format!("  taken from the other side of {}\n", plane(m))))
         .collect();
     lines.concat()

@@ -1,6 +1,6 @@
 //! The cut itself: from the patch, as places are looked up on it, to a sound solid.
 
-use bonemesh_mesh::{TriangleMesh, TriangleTree};
+use bonemesh_mesh::{TriangleMesh, TriangleTree, check_topology};
 use bonemesh_task::Task;
 use rustc_hash::FxHashSet;
 
@@ -67,6 +67,7 @@ impl Cut<'_> {
         let bone = TriangleMesh::new(part.vertices_mm, part.triangles)?;
         let lattice = Lattice::around(frame, space, self.step_mm);
         let (stock, cutter) = if direction == Direction::Outward {
+            refuse_unsound(&bone, task)?;
             let [sides, between] = self.bodies(&bone, &lattice, task)?;
             (Stock::of(sides, task)?, between)
         } else {
@@ -194,6 +195,18 @@ impl Cut<'_> {
             kept_off: Some((whole.lookup(task)?, clearance_mm)),
         })))
     }
+}
+
+/// Refuses bone that says nowhere which way is out: a plate takes no boolean with it that would.
+fn refuse_unsound(bone: &TriangleMesh, task: &Task) -> Result<(), RoiError> {
+    let topology = check_topology(bone, task)?;
+    if !topology.watertight || topology.inconsistent_edges > 0 {
+        return Err(RoiError::Open);
+    }
+    if is_inside_out(bone) {
+        return Err(RoiError::NothingCut);
+    }
+    Ok(())
 }
 
 /// Whether a closed surface has its inside outside.

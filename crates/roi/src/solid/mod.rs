@@ -20,6 +20,7 @@ mod far_side;
 mod fields;
 mod finish;
 mod flaps;
+mod gap;
 mod lattice;
 mod mend;
 mod outline;
@@ -41,6 +42,7 @@ pub(crate) use self::space::Space;
 pub(crate) use self::straight::covered;
 
 use self::cut::Cut;
+use self::gap::least_gap_mm;
 use self::lattice::{affordable_mm, step_mm};
 use self::outline::Outline;
 use self::patch::{Meant, Patch};
@@ -58,6 +60,12 @@ const EDGE_STEPS: f64 = 3.0;
 /// At least so many of them in the patch's width, and so many beside it.
 const EDGES_IN_WIDTH: f64 = 6.0;
 const EDGES_BESIDE: f64 = 6.0;
+/// Steps of a plate in its clearance, so that no ridge of the bone is passed over, but no less than a fine scan's pixel
+/// (mm); and how often they are halved where it comes nearer than a part of its clearance all the same.
+const IN_CLEARANCE: f64 = 1.5;
+const LEAST_PLATE_STEP_MM: f64 = 0.15;
+const HALVINGS: usize = 2;
+const NEARER: f64 = 0.8;
 /// Least thickness, and least distance from the outline to the middle of a patch, in steps.
 const LEAST_STEPS: f64 = 1.5;
 
@@ -110,6 +118,8 @@ pub struct Solid {
     pub dropped: usize,
     /// Gaps in the selection that were closed.
     pub closed: usize,
+    /// How near a plate comes to the bone (mm), if nearer than its clearance.
+    pub gap_mm: Option<f64>,
 }
 
 /// The bone of `mesh` under the `selected` vertices, down to the thickness or to the far side of the bone; or
@@ -141,6 +151,8 @@ pub fn select_solid(
     let mut vertices_mm = Vec::new();
     let mut triangles = Vec::new();
     let dropped = meant.dropped + parts.len() - solids.len();
+    let gap_mm = solids.iter().filter_map(|solid| solid.gap_mm);
+    let gap_mm = gap_mm.reduce(f64::min);
     for solid in solids {
         let first = vertices_mm.len() as u32;
         let (places, corners) = solid.mesh.into_parts();
@@ -154,6 +166,7 @@ pub fn select_solid(
         inward,
         dropped,
         closed: meant.closed,
+        gap_mm,
     })
 }
 
@@ -245,7 +258,7 @@ fn cut_out(
     let space = patch.space().ok_or(RoiError::NothingCut)?;
     let (area_mm2, is_patch) = (patch.area_mm2(), patch.of_mesh());
     let thickness_mm = request.thickness.mm();
-    let step_mm = fitting_step_mm(mesh, &space, area_mm2, request)?;
+    let mut step_mm = fitting_step_mm(mesh, &space, area_mm2, request)?;
     let mut fine = patch.clone();
     let longest_mm = (EDGE_STEPS * step_mm).min(area_mm2.sqrt() / EDGES_IN_WIDTH);
     fine.refine(&space.wider(EDGES_BESIDE * longest_mm), longest_mm, task)?;
@@ -255,20 +268,37 @@ fn cut_out(
     if width_mm < LEAST_STEPS * step_mm {
         return Err(RoiError::TooSmall { area_mm2 });
     }
-    let cut = Cut {
-        request,
-        step_mm,
-        inward,
-        sheet,
+    let cut = |step_mm: f64, sheet: Sheet| {
+        let cut = Cut {
+            request,
+            step_mm,
+            inward,
+            sheet,
+        };
+        cut.sound(mesh, &is_patch, task)
     };
-    Ok(Solid {
-        mesh: cut.sound(mesh, &is_patch, task)?,
+    let mut solid = Solid {
+        mesh: cut(step_mm, sheet)?,
         selected: 0,
         patch_mm2: area_mm2,
         inward,
         dropped: 0,
         closed: 0,
-    })
+        gap_mm: None,
+    };
+    if request.direction == Direction::Outward {
+        let clearance_mm = request.clearance.mm();
+        for halving in 0.. {
+            solid.gap_mm = least_gap_mm(&solid.mesh, mesh, clearance_mm, task)?;
+            let is_kept = solid.gap_mm.is_none_or(|gap| gap >= NEARER * clearance_mm);
+            step_mm /= 2.0;
+            if is_kept || halving == HALVINGS || step_mm < LEAST_PLATE_STEP_MM {
+                break;
+            }
+            solid.mesh = cut(step_mm, Sheet::of(&fine.near, &outline, thickness_mm)?)?;
+        }
+    }
+    Ok(solid)
 }
 
 /// How far apart the nodes are for a patch of that box and area, where so thin a cut can be told at all.
@@ -285,7 +315,12 @@ fn fitting_step_mm(
         }
         _ => space.wider(request.reach_mm()),
     };
-    let step_mm = affordable_mm(&cut_space, step_mm(area_mm2, thickness_mm));
+    let mut step_mm = step_mm(area_mm2, thickness_mm);
+    if request.direction == Direction::Outward {
+        let of_clearance = request.clearance.mm() / IN_CLEARANCE;
+        step_mm = step_mm.min(of_clearance.max(LEAST_PLATE_STEP_MM));
+    }
+    let step_mm = affordable_mm(&cut_space, step_mm);
     let least_mm = LEAST_STEPS * step_mm;
     if thickness_mm < least_mm {
         return Err(RoiError::TooThin {

@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
-use bonemesh_mesh::TriangleMesh;
-use bonemesh_roi::{ClearanceMm, Direction, SolidRequest};
+use bonemesh_mesh::{TriangleMesh, TriangleTree};
+use bonemesh_roi::{ClearanceMm, Direction, RoiError, SolidRequest, select_solid};
+use bonemesh_task::Task;
 
 use crate::bodies::{body, length, request, selected, shell, solid, sound, volume_mm3};
 
@@ -168,4 +169,54 @@ fn a_plate_thicker_than_the_bone_stays_outside_of_it() {
     let nearest = plate.mesh.vertices_mm().iter().map(|p| length(*p));
     let nearest = nearest.fold(f64::INFINITY, f64::min);
     assert!(nearest > 20.1, "{nearest}");
+}
+
+#[test]
+fn a_plate_keeps_its_clearance_from_ridges_narrower_than_its_steps() {
+    // Ridges 0.5 mm wide and 1 mm high, 4 mm apart.
+    let ridged = body([15.0, 15.0, 4.0], |[x, y, z]| {
+        let ridge = 0.25 - ((x / 4.0).round() * 4.0 - x).abs();
+        let plate = (14.0 - x.abs()).min(14.0 - y.abs()).min(2.0 - z.abs());
+        let ridges = ridge
+            .min(3.0 - z.abs())
+            .min(14.0 - y.abs())
+            .min(14.0 - x.abs());
+        plate.max(ridges)
+    });
+    let patch = selected(&ridged, |[x, y, z]| z > 1.5 && x.hypot(y) < 9.0);
+    let request = SolidRequest {
+        clearance: ClearanceMm::new(0.5).unwrap(),
+        ..towards(Direction::Outward, 5.0)
+    };
+    let plate = sound(&ridged, &patch, &request);
+    let tree = TriangleTree::new(&plate.mesh, &Task::default()).unwrap();
+    let gaps = ridged
+        .vertices_mm()
+        .iter()
+        .filter_map(|v| tree.nearest(*v, 0.5));
+    let least = gaps
+        .map(|found| found.squared_mm2.sqrt())
+        .fold(0.5, f64::min);
+    assert!(least > 0.3, "{least} mm");
+    assert!(
+        plate.gap_mm.is_none_or(|gap| (gap - least).abs() < 0.05),
+        "{:?}",
+        plate.gap_mm
+    );
+}
+
+#[test]
+fn a_plate_is_refused_where_nothing_says_which_way_is_out() {
+    let shell = shell();
+    let patch = selected(&shell, |p| length(p) > 17.0 && p[0] > 15.0);
+    let request = towards(Direction::Outward, 3.0);
+    let turned = |is_turned: fn(usize) -> bool| {
+        let numbered = shell.triangles().iter().enumerate();
+        let triangles =
+            numbered.map(|(n, &[a, b, c])| if is_turned(n) { [a, c, b] } else { [a, b, c] });
+        let mesh = TriangleMesh::new(shell.vertices_mm().to_vec(), triangles.collect()).unwrap();
+        select_solid(&mesh, &patch, &request, &Task::default()).unwrap_err()
+    };
+    assert!(matches!(turned(|_| true), RoiError::NothingCut));
+    assert!(matches!(turned(|n| n % 5 == 0), RoiError::Open));
 }

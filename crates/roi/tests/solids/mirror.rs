@@ -1,7 +1,7 @@
 //! Planes of symmetry, and what lies on their other side.
 
 use bonemesh_mesh::{Plane, TriangleMesh, TriangleTree};
-use bonemesh_roi::{RoiError, counterpart, symmetry_plane};
+use bonemesh_roi::{RoiError, counterparts, symmetry_plane};
 use bonemesh_task::Task;
 
 use crate::bodies::{body, length, selected, solid, volume_mm3};
@@ -91,13 +91,16 @@ fn the_healthy_side_of_a_selection_around_a_defect_has_what_the_defect_lacks() {
         p[0] > 0.0 && p[1].hypot(p[2]) < 8.0 && skull(p, 15.8) < 0.0
     });
     let plane = Plane::new([1.0, 0.0, 0.0], 0.0).unwrap();
-    let other = counterpart(&head, &around, &plane, &Task::default()).unwrap();
+    let found = counterparts(&head, &around, &plane, &Task::default()).unwrap();
+    let [other] = &found.sides[..] else {
+        panic!("the selection faces one way");
+    };
     assert!(
         other
             .iter()
             .all(|v| head.vertices_mm()[*v as usize][0] < 0.0)
     );
-    let template = solid(&head, &other, 6.0);
+    let template = solid(&head, other, 6.0);
     let whole = solid(&head, &around, 6.0);
     // The hole of 4 mm and its sides, which are bone on the other side.
     let missing = volume_mm3(&template) - volume_mm3(&whole);
@@ -108,29 +111,24 @@ fn the_healthy_side_of_a_selection_around_a_defect_has_what_the_defect_lacks() {
     let tree = TriangleTree::new(&back, &Task::default()).unwrap();
     assert!(tree.nearest([16.0, 0.0, 0.0], 0.3).is_some());
     let far = Plane::new([1.0, 0.0, 0.0], 300.0).unwrap();
-    let none = counterpart(&head, &around, &far, &Task::default());
+    let none = counterparts(&head, &around, &far, &Task::default());
     assert!(matches!(none, Err(RoiError::NoCounterpart)));
 }
 
 #[test]
 fn pieces_that_face_other_ways_have_counterparts_of_their_own() {
     let ball = body([11.0; 3], |p| 10.0 - length(p));
-    let left = |[x, y, z]: [f64; 3]| x > 0.0 && (y - 3.0).hypot(z) < 3.0;
-    let top = |[x, y, z]: [f64; 3]| z > 0.0 && (x - 4.0).hypot(y) < 2.0;
+    let left: fn([f64; 3]) -> bool = |[x, y, z]| x > 0.0 && (y - 3.0).hypot(z) < 3.0;
+    let top: fn([f64; 3]) -> bool = |[x, y, z]| z > 0.0 && (x - 4.0).hypot(y) < 2.0;
     let plane = Plane::new([1.0, 0.0, 0.0], 0.0).unwrap();
     let opposite =
-        |selection: &[u32]| counterpart(&ball, selection, &plane, &Task::default()).unwrap();
-    let mut apart = [
-        opposite(&selected(&ball, left)),
-        opposite(&selected(&ball, top)),
-    ]
-    .concat();
-    apart.sort_unstable();
+        |selection: &[u32]| counterparts(&ball, selection, &plane, &Task::default()).unwrap();
+    let apart = [left, top].map(|is_in| opposite(&selected(&ball, is_in)).sides.remove(0));
     let both = opposite(&selected(&ball, |p| left(p) || top(p)));
-    assert_eq!(both, apart);
+    assert_eq!((&both.sides[..], both.missing), (&apart[..], 0));
     let mirrored = |[x, y, z]: [f64; 3]| [-x, y, z];
     // Gaps of the area are closed up to half a cell beyond the selection.
-    for vertex in both {
+    for vertex in both.sides.concat() {
         let place = mirrored(ball.vertices_mm()[vertex as usize]);
         let [x, y, z] = place;
         assert!(
