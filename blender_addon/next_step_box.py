@@ -3,7 +3,7 @@
 
 from typing import Any
 
-from . import job, steps
+from . import steps
 from .last_messages import messages
 from .operators.start_lasso import BONEMESH_OT_start_lasso
 from .scene import SOURCE
@@ -13,9 +13,7 @@ ICONS = {"INFO": "INFO", "WARNING": "ERROR", "ERROR": "CANCEL"}
 
 
 def draw(layout: Any, context: Any) -> None:
-    """Draws the box, but while a job runs: then its progress is what counts."""
-    if job.running() is not None:
-        return
+    """Draws the box."""
     box, now = layout.box().column(align=True), seen(context)
     text = steps.next_step(context.scene.bonemesh, now)
     draw_text(box, context, text, icon="FORWARD")

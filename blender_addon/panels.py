@@ -47,7 +47,12 @@ class BONEMESH_PT_segment_ct(Panel):
         properties = context.scene.bonemesh
         layout = self.layout
 
-        next_step_box.draw(layout, context)
+        # At the top, where it is seen without scrolling.
+        running = job.running()
+        if running is None:
+            next_step_box.draw(layout, context)
+        else:
+            draw_progress(layout, running)
         column = layout.column()
         column.operator(BONEMESH_OT_choose_ct_directory.bl_idname)
         column.prop(properties, "ct_directory", text="")
@@ -76,9 +81,6 @@ class BONEMESH_PT_segment_ct(Panel):
         column.operator(BONEMESH_OT_check_mesh.bl_idname)
         mesh_box.draw(column, context)
 
-        running = job.running()
-        if running is not None:
-            draw_progress(layout, running)
 
 
 def draw_progress(layout: UILayout, running: job.Job) -> None:
