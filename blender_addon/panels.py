@@ -82,7 +82,6 @@ class BONEMESH_PT_segment_ct(Panel):
         mesh_box.draw(column, context)
 
 
-
 def draw_progress(layout: UILayout, running: job.Job) -> None:
     """Draws how far the running job is and the button that stops it."""
     stage, fraction = running.progress

@@ -137,7 +137,7 @@ class BonemeshProperties(PropertyGroup):
     )
     show_preview: BoolProperty(
         name="Live Preview",
-        description="Shows a coarse surface at the threshold in the 3D view, at once and up to a voxel too thick, until the surface itself is made",
+        description="Shows a coarse surface at the threshold in the 3D view, at once, a little too thick and with the scanner's table, until the surface itself is made",
         default=True,
         update=preview_changed,
     )
