@@ -35,6 +35,14 @@ def use_box(context: Any) -> str:
     grid = grid_of(properties)
     box = crop_box.box_of(scene_crop.corners_mm(context, placed), grid)
     text = crop_box.written(box, grid)
+    scene_crop.note_place(context, placed)
     if properties.crop != text:
         properties.crop = text
     return text
+
+
+def use_moved_box(context: Any) -> None:
+    """The same before a rendering, if there is a box that was moved; else the field was set last, and counts."""
+    placed = scene_crop.found(context.scene)
+    if placed is not None and scene_crop.is_moved(context, placed):
+        use_box(context)

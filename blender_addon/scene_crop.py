@@ -19,6 +19,8 @@ from .crop_box import Box, Grid
 
 NAME = "Bonemesh Crop Box"
 TAG = "bonemesh_crop_box"
+NOTED = "bonemesh_noted_mm"
+SAME_MM = 1e-3
 
 
 def place(context: Any, box: Box, grid: Grid) -> Any:
@@ -40,7 +42,7 @@ def place(context: Any, box: Box, grid: Grid) -> Any:
     matrix[:3, :3], matrix[:3, 3] = turned, centre
     placed.matrix_world = Matrix(matrix.tolist())
     placed.hide_set(False)
-    context.view_layer.update()
+    note_place(context, placed)
     return placed
 
 
@@ -61,6 +63,18 @@ def corners_mm(context: Any, placed: Any) -> NDArray[np.float64]:
         local.reshape(-1, 3).astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
     )
     return corners
+
+
+def note_place(context: Any, placed: Any) -> None:
+    """Notes where the box is, now that the field Crop says the same."""
+    placed[NOTED] = corners_mm(context, placed).ravel().tolist()
+
+
+def is_moved(context: Any, placed: Any) -> bool:
+    """Whether the user moved, scaled or edited the box since then."""
+    noted = np.array(placed.get(NOTED, ()), dtype=np.float64)
+    now = corners_mm(context, placed).ravel()
+    return noted.shape != now.shape or not np.allclose(noted, now, atol=SAME_MM, rtol=0)
 
 
 def remove(placed: Any) -> None:

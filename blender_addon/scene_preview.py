@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
-from .scene import fill, viewport_material
+from .scene import fill
+from .scene_materials import material
 
 if TYPE_CHECKING:
     import bonemesh
@@ -31,7 +32,7 @@ def show(context: Any, mesh: bonemesh.Mesh) -> None:
         placed[TAG] = placed.data[TAG] = True
         placed.hide_select = True
         placed.hide_render = True
-        placed.data.materials.append(viewport_material(NAME, COLOUR))
+        placed.data.materials.append(material(NAME, COLOUR))
         context.scene.collection.objects.link(placed)
     placed.data.clear_geometry()
     fill(placed.data, mesh.vertices, mesh.triangles)
@@ -51,6 +52,6 @@ def remove() -> None:
         bpy.data.objects.remove(placed)
     for data in [m for m in bpy.data.meshes if TAG in m and m.users == 0]:
         bpy.data.meshes.remove(data)
-    material = bpy.data.materials.get(NAME)
-    if material is not None and material.users == 0:
-        bpy.data.materials.remove(material)
+    colour = bpy.data.materials.get(NAME)
+    if colour is not None and colour.users == 0:
+        bpy.data.materials.remove(colour)

@@ -13,7 +13,6 @@ from .. import (
     previewing,
     scanning,
     scene,
-    scene_crop,
     stages,
     steps,
     window,
@@ -40,8 +39,7 @@ class BONEMESH_OT_render_surface_mesh(BackgroundOperator, Operator):
     def prepare(self, context: Context) -> Job[bonemesh.Mesh]:
         """Checks the panel's fields."""
         properties = context.scene.bonemesh
-        if scene_crop.found(context.scene) is not None:
-            cropping.use_box(context)
+        cropping.use_moved_box(context)
         self._inputs = inputs = RenderInputs.read(properties, bpy.path.abspath)
         short = memory_box.warning(properties)
         if short is not None:

@@ -125,6 +125,10 @@ def test_rendering_takes_the_box_as_it_is(answers: dict[str, Any]) -> None:
     assert answers["rendered whole"]["crop"] == ""
 
 
+def test_a_field_that_was_set_after_the_box_counts(answers: dict[str, Any]) -> None:
+    assert answers["typed after it"] == answers["rendered whole"]
+
+
 def test_the_box_is_not_taken_for_a_bone(answers: dict[str, Any]) -> None:
     assert "active" in answers["checked"]
 

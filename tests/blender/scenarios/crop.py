@@ -51,11 +51,8 @@ def expected_corners(series: Any) -> list[list[float]]:
     return [(affine @ [*end, 1.0])[:3].tolist() for end in ends]
 
 
-def edited(slices: int) -> str:
-    """Drags the upper face down to the middle in Edit Mode, as its vertices do."""
-    OPS.show_crop_box()
-    bpy.ops.object.mode_set(mode="EDIT")
-    bpy.ops.object.mode_set(mode="OBJECT")
+def shrink(slices: int) -> None:
+    """Drags the upper face down to the middle, as its vertices do in Edit Mode."""
     placed = box()
     heights = [v.co.z for v in placed.data.vertices]
     middle = (min(heights) + max(heights)) / 2.0
@@ -63,6 +60,12 @@ def edited(slices: int) -> str:
     for vertex in placed.data.vertices:
         if vertex.co.z > middle:
             vertex.co.z = top
+
+
+def edited(slices: int) -> str:
+    """What the box holds while it is in Edit Mode with another upper face."""
+    OPS.show_crop_box()
+    shrink(slices)
     bpy.ops.object.mode_set(mode="EDIT")
     text = used()
     bpy.ops.object.mode_set(mode="OBJECT")
@@ -124,6 +127,9 @@ def main(zip: str, out: str, ct: str, two: str) -> dict[str, Any]:
     properties.crop = ""
     answer["edited"] = edited(series.slices)
     properties.crop = ""
+    answer["typed after it"] = rendered(out)
+    OPS.show_crop_box()
+    shrink(series.slices)
     answer["rendered"] = rendered(out)
     OPS.remove_crop_box()
     assert box() is None
