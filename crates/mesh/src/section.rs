@@ -11,11 +11,14 @@
 use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;
 
-use crate::vector::Vector;
+use crate::vector::{Vector, minus};
 use crate::{Plane, TriangleMesh};
 
 /// Triangles or vertices done between two looks at the cancel switch.
 const STRIDE: usize = 1 << 15;
+
+/// What is smaller is rounding: coordinates come as 32-bit numbers.
+const SMALLEST_MM: f64 = 1e-9;
 
 /// An end of a cut that meets no other: the rim of an open surface.
 const NONE: u32 = u32::MAX;
@@ -34,7 +37,7 @@ pub struct Outline {
 /// Of a closed surface all lines are closed. Seen against the normal they run counter-clockwise around
 /// the body and clockwise around what is hollow, where triangles face outward. Vertices in the plane
 /// count as just above it: a body that only touches the plane from above has no line there, one that
-/// stands on it from below has its rim. Lines that have shrunk to a point or two are left out. What is
+/// stands on it from below has its rim. Lines that have shrunk to a point are left out. What is
 /// open, non-manifold or wrongly turned gives lines too, closed or not.
 ///
 /// The result is the same for any number of threads.
@@ -145,6 +148,15 @@ fn crossing(mesh: &TriangleMesh, above: &[f64], [low, high]: [u32; 2]) -> Vector
     }
 }
 
+/// Whether a line has shrunk to one point but for rounding.
+fn is_point(points_mm: &[Vector]) -> bool {
+    let near = |point: &Vector| {
+        let from_first = minus(*point, points_mm[0]);
+        from_first.iter().all(|c| c.abs() < SMALLEST_MM)
+    };
+    points_mm.iter().all(near)
+}
+
 /// The way along the cuts.
 struct Walk<'a> {
     cuts: &'a [[[u32; 2]; 2]],
@@ -182,7 +194,7 @@ impl<'a> Walk<'a> {
                 points_mm.pop();
             }
             let fewest = if is_closed { 3 } else { 2 };
-            if points_mm.len() >= fewest {
+            if points_mm.len() >= fewest && !is_point(&points_mm) {
                 outlines.push(Outline {
                     points_mm,
                     is_closed,
