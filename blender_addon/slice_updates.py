@@ -16,24 +16,20 @@ from bpy.app.handlers import persistent
 from . import scene_slices, selection, slice_store
 from .slice_store import PLANES, Shown
 
-SURFACE = "surface"
-
 _drawn_mm: dict[str, float] = {}
 _is_drawing = False
-_surface_name: str | None = None
 
 
 def surface() -> Any:
-    """The object whose contours are shown, if it is still there."""
-    placed = bpy.data.objects.get(_surface_name) if _surface_name else None
+    """The object whose contours are shown: that on which the slices hang, whatever its name is now."""
+    stack = scene_slices.found("stack")
+    placed = None if stack is None else stack.parent
     return placed if placed is not None and placed.type == "MESH" else None
 
 
 def take_surface(placed: Any) -> None:
-    """Takes a mesh object for the contours; None takes none."""
-    global _surface_name
+    """Copies a mesh object for the contours; None takes none."""
     shown = slice_store.current()
-    _surface_name = None if placed is None else placed.name
     if shown is None:
         return
     shown.surface = None
@@ -77,20 +73,22 @@ def draw(shown: Shown, name: str, position_mm: float) -> None:
 
 def forget() -> None:
     """Lets the volume go."""
-    global _surface_name
     slice_store.keep(None)
-    _surface_name = None
     _drawn_mm.clear()
 
 
 @persistent
 def on_change(_scene: Any, depsgraph: Any) -> None:
-    """After every change: a slice may have been moved, or the surface edited."""
+    """After every change: a slice may have been moved, or the surface edited or deleted."""
     shown = slice_store.current()
     if shown is None or _is_drawing:
         return
     placed = surface()
-    if placed is not None and placed.mode == "OBJECT" and is_edited(placed, depsgraph):
+    if placed is None:
+        is_stale = shown.surface is not None
+    else:
+        is_stale = placed.mode == "OBJECT" and is_edited(placed, depsgraph)
+    if is_stale:
         take_surface(placed)
         draw_all()
     else:
@@ -107,8 +105,9 @@ def is_edited(placed: Any, depsgraph: Any) -> bool:
 
 @persistent
 def on_undo(*_arguments: Any) -> None:
-    """Undo brings objects back where they were, not what was drawn for them."""
+    """Undo brings objects back as they were, not what was drawn for them."""
     if slice_store.current() is not None:
+        take_surface(surface())
         draw_all()
 
 

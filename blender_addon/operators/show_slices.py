@@ -55,8 +55,8 @@ class BONEMESH_OT_show_slices(BackgroundOperator, Operator):
         scene.use_millimetres(context)
         slice_store.keep(result)
         surface = bpy.data.objects.get(self._surface or "")
-        slice_updates.take_surface(surface)
         scene_slices.show(context, result, surface)
+        slice_updates.take_surface(surface)
         slice_updates.draw_all()
         return result.memory_text()
 

@@ -211,3 +211,32 @@ def test_what_cannot_be_shown_is_refused(run: dict[str, Any]) -> None:
 def test_nothing_is_left_of_slices_that_are_taken_away(run: dict[str, Any]) -> None:
     assert run["left"] == [[], [], True]
     assert run["handlers"] == 1
+
+
+@pytest.fixture(scope="module")
+def undone(
+    extension_zip: Path, bonemesh: ModuleType, tmp_path_factory: pytest.TempPathFactory
+) -> dict[str, Any]:
+    folder = tmp_path_factory.mktemp("slices_undo")
+    bonemesh.write_phantom("head", folder / "head", coarser=3.0)
+    return Blender(extension_zip, folder).run("slices_undo", ct=folder / "head")
+
+
+def test_undo_brings_pictures_and_contours_back(undone: dict[str, Any]) -> None:
+    assert undone["moved"]["grey"] != undone["shown"]["grey"]
+    assert undone["move undone"] == undone["shown"]
+    assert undone["move redone"] == undone["moved"]
+    assert undone["all undone"]
+    assert undone["shown again"] == undone["shown"]
+
+
+def test_contours_stay_with_a_renamed_bone_and_go_with_a_deleted_one(
+    undone: dict[str, Any],
+) -> None:
+    renamed, deleted = undone["renamed"], undone["deleted"]
+    assert renamed["points"] > 0
+    assert renamed["surface"] == "another name"
+    assert deleted["points"] == 0
+    assert deleted["grey"] == renamed["grey"]
+    assert undone["panel"] == [True, [True, True, True]]
+    assert undone["deletion undone"]["points"] == renamed["points"]
