@@ -11,6 +11,7 @@ def parts() -> tuple[ModuleType, ...]:
     from . import (
         directions,
         export_panel,
+        help_panel,
         operators,
         output_properties,
         panels,
@@ -35,6 +36,7 @@ def parts() -> tuple[ModuleType, ...]:
         views_panel,
         slices_panel,
         export_panel,
+        help_panel,
         directions,
     )
 

@@ -1,4 +1,4 @@
-"""Lays out a Blender extension in a folder: add-on, wheel, licences, and the manifest filled in.
+"""Lays out a Blender extension in a folder: add-on, wheel, licences, the guide, and the manifest filled in.
 
 usage: stage_extension.py WHEEL PLATFORM FOLDER        prints the version
 """
@@ -10,11 +10,17 @@ import tomllib
 import zipfile
 from pathlib import Path
 
+from guide_page import write_guide
+
 ROOT = Path(__file__).resolve().parents[2]
 ADDON = ROOT / "blender_addon"
 LICENCES = (
     "bonemesh/licenses/"  # where the wheel keeps those of what is compiled into it
 )
+
+
+# Blender itself has no build for them from this version on.
+FIRST_BLENDER_WITHOUT = {"macos-x64": "5.0.0"}
 
 
 def workspace_version() -> str:
@@ -28,9 +34,16 @@ def filled_in_manifest(version: str, platform: str, wheel: str) -> str:
     """The add-on's manifest with what only a build knows."""
     text = (ADDON / "blender_manifest.toml").read_text(encoding="utf-8")
     lines = [line for line in text.splitlines() if not line.startswith("#")]
+    known = [
+        f'version = "{version}"',
+        f'platforms = ["{platform}"]',
+        f'wheels = ["./wheels/{wheel}"]',
+    ]
+    if platform in FIRST_BLENDER_WITHOUT:
+        known.append(f'blender_version_max = "{FIRST_BLENDER_WITHOUT[platform]}"')
     text, count = re.subn(
         r'^version = ".*"$',
-        f'version = "{version}"\nplatforms = ["{platform}"]\nwheels = ["./wheels/{wheel}"]',
+        "\n".join(known),
         "\n".join(lines) + "\n",
         flags=re.MULTILINE,
     )
@@ -66,9 +79,9 @@ def main(wheel_path: str, platform: str, folder_path: str) -> None:
         sys.exit(
             f"error: {wheel.name} is not the abi3 wheel of version {version}; build it from crates/python"
         )
-    shutil.copytree(
-        ADDON, folder, ignore=shutil.ignore_patterns("__pycache__", "*.toml", ".*")
-    )
+    left_out = shutil.ignore_patterns("__pycache__", "*.toml", "*.md", "images", ".*")
+    shutil.copytree(ADDON, folder, ignore=left_out)
+    write_guide(ADDON, folder / "guide")
     manifest = filled_in_manifest(version, platform, wheel.name)
     (folder / "blender_manifest.toml").write_text(manifest, encoding="utf-8")
     (folder / "wheels").mkdir()

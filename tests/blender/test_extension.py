@@ -1,5 +1,6 @@
 """The extension as a whole: installing, enabling, disabling, undo, a library that does not load."""
 
+import re
 import zipfile
 from pathlib import Path
 
@@ -37,7 +38,22 @@ def test_a_library_that_does_not_load_is_explained_in_the_panel(
     assert not answer["stand_in"]
 
 
-def test_the_zip_brings_its_wheel_its_licences_and_nothing_else(
+def test_the_zip_brings_the_guide_with_its_pictures_and_no_links_that_lead_nowhere(
+    extension_zip: Path,
+) -> None:
+    with zipfile.ZipFile(extension_zip) as extension:
+        names = set(extension.namelist())
+        page = extension.read("guide/index.html").decode()
+    pictures = re.findall(r'src="([^"]+)"', page)
+    assert len(pictures) > 3
+    assert {f"guide/{picture}" for picture in pictures} <= names
+    links = re.findall(r'href="([^"]+)"', page)
+    assert [link for link in links if not link.startswith(("https://", "#"))] == []
+    anchors = set(re.findall(r'id="([^"]+)"', page))
+    assert {link[1:] for link in links if link.startswith("#")} <= anchors
+
+
+def test_the_zip_brings_its_wheel_its_licences_its_guide_and_nothing_else(
     extension_zip: Path,
 ) -> None:
     with zipfile.ZipFile(extension_zip) as extension:
@@ -47,6 +63,6 @@ def test_the_zip_brings_its_wheel_its_licences_and_nothing_else(
     assert [n for n in names if n.endswith(".whl") and "-abi3-" in n]
     expected = (".py", ".toml", ".whl", "LICENSE")
     assert all(
-        n.endswith(expected) or n.startswith("licenses/") or n.endswith("/")
+        n.endswith(expected) or n.startswith(("licenses/", "guide/")) or n.endswith("/")
         for n in names
     )
