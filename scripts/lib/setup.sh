@@ -59,7 +59,7 @@ need_cmake() {
 # find_python VERSION: prints a working interpreter of that version, or fails.
 find_python() {
     local candidate
-    for candidate in "python$1" "$HOME"/.pyenv/versions/"$1".*/bin/python3 /usr/bin/"python$1"; do
+    for candidate in "python$1" "$HOME"/.pyenv/versions/"$1".*/bin/python3 /usr/bin/"python$1" python3 python; do
         if "$candidate" -c "import ensurepip, sys, venv; sys.exit('%d.%d' % sys.version_info[:2] != '$1')" 2>/dev/null; then
             echo "$candidate"
             return 0
@@ -75,6 +75,9 @@ any_python() {
     fail "Python 3.11 or newer with venv is missing; run: apt-get install python3 python3-venv"
 }
 
+# python_of DIR: the interpreter of a virtual environment; Windows has it in another folder.
+python_of() { if [ -d "$1/Scripts" ]; then echo "$1/Scripts/python.exe"; else echo "$1/bin/python"; fi; }
+
 # venv DIR PYTHON REQUIREMENTS: a virtual environment with the requirements, made once and kept
 # until the requirements or the interpreter change.
 venv() {
@@ -84,8 +87,8 @@ venv() {
     say "setting up $(basename "$dir") with $("$python" --version)"
     rm -rf "$dir"
     "$python" -m venv "$dir"
-    "$dir/bin/python" -m pip install --quiet --disable-pip-version-check --upgrade pip
-    "$dir/bin/python" -m pip install --quiet --disable-pip-version-check -r "$requirements" ||
+    "$(python_of "$dir")" -m pip install --quiet --disable-pip-version-check --upgrade pip
+    "$(python_of "$dir")" -m pip install --quiet --disable-pip-version-check -r "$requirements" ||
         fail "pip could not install $requirements; is the network there?"
     echo "$stamp" >"$dir/.stamp"
 }
