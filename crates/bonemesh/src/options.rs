@@ -136,7 +136,7 @@ impl OptionsReport {
 fn threshold(settings: &Settings) -> Chosen {
     let name = settings
         .find_threshold
-        .map(|finder| finder.name())
-        .or_else(|| settings.preset.map(|preset| preset.name()));
+        .map(bonemesh_segment::ThresholdFinder::name)
+        .or_else(|| settings.preset.map(bonemesh_segment::ThresholdPreset::name));
     name.map_or_else(|| Chosen::Number(settings.threshold.hu()), Chosen::word)
 }

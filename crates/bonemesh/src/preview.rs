@@ -36,8 +36,9 @@ const TWICE: NonZeroUsize = NonZero::new(2).expect("more than none");
 pub struct Preview {
     geometry: Geometry,
     range_hu: (f64, f64),
-    /// Finest first.
-    levels: Vec<Level>,
+    finest: Level,
+    /// Each of larger voxels than the one before.
+    coarser: Vec<Level>,
 }
 
 #[derive(Clone, Debug)]
@@ -82,19 +83,20 @@ impl Preview {
     pub fn of(volume: &Volume, threads: Option<NonZeroUsize>, task: &Task) -> Result<Self, Error> {
         pool(threads)?.install(|| {
             let block = volume.geometry().block_for(MOST_VOXELS);
-            let mut levels = vec![Level {
+            let finest = Level {
                 volume: volume.coarsened(block, task)?,
                 block,
-            }];
-            while levels.len() < LEVELS {
-                let finer = &levels[levels.len() - 1];
-                let level = finer.coarser(task)?;
-                levels.push(level);
+            };
+            let mut coarser: Vec<Level> = Vec::new();
+            for _ in 1..LEVELS {
+                let level = coarser.last().unwrap_or(&finest).coarser(task)?;
+                coarser.push(level);
             }
             Ok(Self {
                 geometry: volume.geometry().clone(),
                 range_hu: volume.hu_range(),
-                levels,
+                finest,
+                coarser,
             })
         })
     }
@@ -124,25 +126,24 @@ impl Preview {
                 .map_err(VolumeError::from)?;
         }
         pool(threads)?.install(|| {
-            let mut coarser = self.levels.iter();
-            loop {
-                let level = coarser
-                    .next()
-                    .expect("the last level is always taken; otherwise this is a bug");
-                let mesh = level.surface(threshold, crop, task)?;
-                let (vertices, triangles) = (mesh.vertices_mm().len(), mesh.triangles().len());
-                if triangles <= MOST_TRIANGLES || coarser.len() == 0 {
-                    let report = PreviewReport {
-                        version: VERSION,
-                        threshold_hu: threshold.hu(),
-                        spacing_mm: level.volume.geometry().spacing_mm(),
-                        vertices,
-                        triangles,
-                        seconds: clock.elapsed().as_secs_f64(),
-                    };
-                    return Ok(PreviewSurface { mesh, report });
+            let mut level = &self.finest;
+            let mut mesh = level.surface(threshold, crop, task)?;
+            for coarser in &self.coarser {
+                if mesh.triangles().len() <= MOST_TRIANGLES {
+                    break;
                 }
+                level = coarser;
+                mesh = level.surface(threshold, crop, task)?;
             }
+            let report = PreviewReport {
+                version: VERSION,
+                threshold_hu: threshold.hu(),
+                spacing_mm: level.volume.geometry().spacing_mm(),
+                vertices: mesh.vertices_mm().len(),
+                triangles: mesh.triangles().len(),
+                seconds: clock.elapsed().as_secs_f64(),
+            };
+            Ok(PreviewSurface { mesh, report })
         })
     }
 

@@ -49,9 +49,7 @@ pub fn write_sidecar(mesh_file: &Path, frame: PatientFrame, report: &Value) -> R
         }
     }
     let path = sidecar_path(mesh_file);
-    let mut text = serde_json::to_string_pretty(&all)
-        .expect("JSON made of JSON can be written; otherwise this is a bug");
-    text.push('\n');
+    let text = format!("{:#}\n", Value::Object(all));
     write_whole(&path, |file| {
         use io::Write;
         file.write_all(text.as_bytes())

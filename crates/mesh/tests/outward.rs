@@ -16,9 +16,12 @@ fn faced(mesh: &TriangleMesh) -> (TriangleMesh, usize) {
 /// The mesh with some triangles turned over.
 fn with_turned(of: &TriangleMesh, is_turned: impl Fn(usize) -> bool) -> TriangleMesh {
     let numbered = of.triangles().iter().enumerate();
-    let triangles = numbered.map(|(number, &[a, b, c])| match is_turned(number) {
-        true => [a, c, b],
-        false => [a, b, c],
+    let triangles = numbered.map(|(number, &[a, b, c])| {
+        if is_turned(number) {
+            [a, c, b]
+        } else {
+            [a, b, c]
+        }
     });
     mesh(of.vertices_mm().to_vec(), triangles.collect())
 }

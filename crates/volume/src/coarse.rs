@@ -127,7 +127,7 @@ fn of_whole(members: &mut [i16]) -> i16 {
 
 fn of_fractional(members: &mut [f32]) -> f32 {
     // What is no number goes behind, and does not count.
-    members.sort_unstable_by(|a, b| a.is_nan().cmp(&b.is_nan()));
+    members.sort_unstable_by_key(|value| value.is_nan());
     let numbers = members.iter().take_while(|v| !v.is_nan()).count();
     if numbers == 0 {
         return f32::NAN;

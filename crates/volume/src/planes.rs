@@ -220,7 +220,8 @@ mod tests {
     fn pictures_lie_where_their_voxels_are() {
         let axial = plane(straight(), Anatomical::Axial);
         assert_eq!((axial.shape, axial.pixel_mm), ([8, 6], 0.5));
-        assert!(axial.positions_mm == [100.0, 108.0] && axial.step_mm == 2.0);
+        let [first, last] = axial.positions_mm;
+        assert!(near([first, last, axial.step_mm], [100.0, 108.0, 2.0]));
         // The middle of the picture is that of the voxels, and up is to the front.
         let middle = axial.patient_from_plane.apply([0.0, 0.0, 104.0]);
         assert!(near(middle, [-8.75, 21.75, 104.0]), "{middle:?}");
@@ -229,7 +230,8 @@ mod tests {
         let coronal = plane(straight(), Anatomical::Coronal);
         // Pixels are square: 2 mm of a slice are four rows of 0.5 mm.
         assert_eq!((coronal.shape, coronal.pixel_mm), ([20, 6], 0.5));
-        assert!(coronal.positions_mm == [20.0, 23.5]);
+        let [first, last] = coronal.positions_mm;
+        assert!(near([first, last, 0.0], [20.0, 23.5, 0.0]));
         let sagittal = plane(straight(), Anatomical::Sagittal);
         assert_eq!(sagittal.shape, [20, 8]);
         assert!(near(sagittal.patient_from_plane.axis(0), [0.0, 1.0, 0.0]));
