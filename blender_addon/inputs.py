@@ -159,10 +159,12 @@ def edge_options(properties: Any) -> dict[str, Any]:
     if not uses_edge_points(properties):
         return {}
     percent = as_typed(properties.sample_percent)
+    sampler = properties.sampler if percent < 100.0 else "uniform"
+    has_percent = percent < 100.0 and sampler != "thesis-targeted"
     return {
         "sigma": as_typed(properties.sigma),
-        "sample_percent": percent if percent < 100.0 else None,
-        "sampler": properties.sampler,
+        "sample_percent": percent if has_percent else None,
+        "sampler": sampler,
     }
 
 

@@ -53,11 +53,21 @@ METHODS = [
 ]
 SAMPLERS = [
     ("uniform", "Uniform", "Points at even steps along each contour"),
+    (
+        "targeted",
+        "Targeted",
+        "Points along each contour, more where it bends",
+    ),
     ("random", "Random", "Points drawn by lot"),
     (
         "thesis-uniform",
         "Thesis, Uniform",
         "Ten neighbours at a time, in steps of ten percent (Rier's pseudo-uniform sampling)",
+    ),
+    (
+        "thesis-targeted",
+        "Thesis, Targeted",
+        "Cells of 10 pixels, each thinned by how alike its normals are, to 10, 25, 50 or 75 percent whatever Points Kept says (Rier's targeted sampling)",
     ),
 ]
 FILLED_HOLES = [

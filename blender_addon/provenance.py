@@ -59,7 +59,9 @@ def fields(facts: Facts) -> dict[str, Any]:
         "leave_out_table": not options.get("keep_table"),
         "sigma": options.get("sigma"),
         "sampler": options.get("sampler"),
-        "sample_percent": options.get("sample_percent") or 100.0,
+        # Below 100 the published targeted sampling is used; its own percentages decide.
+        "sample_percent": options.get("sample_percent")
+        or (50.0 if options.get("sampler") == "thesis-targeted" else 100.0),
         **after_care_fields(options),
     }
     return {name: value for name, value in values.items() if value is not None}

@@ -174,3 +174,16 @@ def test_a_series_is_a_number_or_a_uid() -> None:
     assert series_choice(" 2 ") == 2
     assert series_choice("1.2.840.99") == "1.2.840.99"
     assert series_choice("  ") is None
+
+
+def test_a_sampler_is_asked_for_only_where_points_are_left_out(tmp_path: Path) -> None:
+    def options(percent: float, sampler: str) -> tuple[float | None, str]:
+        chosen = RenderInputs.read(
+            fields(tmp_path, sample_percent=percent, sampler=sampler)
+        ).options
+        return chosen["sample_percent"], chosen["sampler"]
+
+    assert options(40.0, "targeted") == (40.0, "targeted")
+    # It has percentages of its own, and the library refuses another.
+    assert options(40.0, "thesis-targeted") == (None, "thesis-targeted")
+    assert options(100.0, "thesis-targeted") == (None, "uniform")

@@ -82,7 +82,16 @@ def test_center_in_world_moves_the_object_and_not_its_file(
             {"sample_percent": 50.0, "sampler": "thesis-uniform"},
             {"sample_percent": 50.0, "sampler": "thesis-uniform"},
         ),
+        (
+            {"sample_percent": 40.0, "sampler": "targeted"},
+            {"sample_percent": 40.0, "sampler": "targeted"},
+        ),
+        (
+            {"sample_percent": 40.0, "sampler": "thesis-targeted"},
+            {"sampler": "thesis-targeted"},
+        ),
         ({"sampler": "random"}, {}),
+        ({"sampler": "thesis-targeted"}, {}),
         ({"series": "1"}, {"series": 1}),
         ({"sigma": 2.2}, {"sigma": 2.2}),
         ({"method": "labelled"}, {"method": "labelled"}),

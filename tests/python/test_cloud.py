@@ -89,48 +89,6 @@ def test_the_published_ring_has_21560_points():
     assert len(bonemesh.point_cloud(bonemesh.phantom("cylinder"))) == 21_560
 
 
-@pytest.mark.parametrize("sampler", ["uniform", "random", "thesis-uniform"])
-def test_samples_are_distinct_points_of_the_cloud(clouds, sampler):
-    points = clouds["phantom"]
-    kept = bonemesh.sample(points, percent=20, sampler=sampler, seed=3)
-    assert len(np.unique(kept)) == len(kept)
-    assert kept.max() < len(points)
-    assert 0.15 * len(points) <= len(kept) <= 0.21 * len(points)
-    again = bonemesh.sample(points, percent=20, sampler=sampler, seed=3, threads=1)
-    assert (kept == again).all()
-
-
-def test_another_seed_gives_another_random_sample(clouds):
-    points = clouds["free"]
-    first = bonemesh.sample(points, percent=10, sampler="random", seed=0)
-    second = bonemesh.sample(points, percent=10, sampler="random", seed=1)
-    assert len(first) == len(second) == 400
-    assert set(first.tolist()) != set(second.tolist())
-
-
-def test_the_published_sampler_by_its_definition():
-    """Take the first point left and its nearest, keep evenly spaced ranks, delete all, repeat."""
-    random = np.random.default_rng(6)
-    slices = [
-        np.column_stack([random.random((37, 2)) * 50, np.full(37, z)])
-        for z in (0.0, 2.5)
-    ]
-    points = np.concatenate(slices)
-    share = 0.3
-    expected = []
-    for z in (0.0, 2.5):
-        left = list(np.flatnonzero(points[:, 2] == z))
-        while left:
-            distances = np.linalg.norm(points[left] - points[left[0]], axis=1)
-            nearest = [left[i] for i in np.argsort(distances, kind="stable")[:10]]
-            keep = int(share * len(nearest))
-            ranks = np.rint(np.linspace(1, len(nearest), keep)).astype(int) - 1
-            expected += [nearest[rank] for rank in ranks]
-            left = [index for index in left if index not in nearest]
-    kept = bonemesh.sample(points, percent=30, sampler="thesis-uniform")
-    assert sorted(kept.tolist()) == sorted(expected)
-
-
 @pytest.mark.parametrize("name", ["headsq", "cranium", "philips-skull"])
 def test_the_alpha_of_real_series(real_ct, name):
     points = bonemesh.point_cloud(bonemesh.read_series(real_ct(name)), threshold_hu=300)

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use bonemesh_cloud::CloudError;
 use bonemesh_dicom::DicomError;
+use bonemesh_measure::MeasureError;
 use bonemesh_mesh::MeshError;
 use bonemesh_metal::MetalError;
 use bonemesh_phantom::PhantomError;
@@ -42,6 +43,9 @@ pub enum Error {
     /// The mesh or its file.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    /// What cannot be measured.
+    #[error(transparent)]
+    Measure(#[from] MeasureError),
     /// The region of interest.
     #[error(transparent)]
     Roi(#[from] RoiError),
@@ -59,19 +63,18 @@ pub enum Error {
         sigma: f64,
     },
     /// Sampling left next to nothing.
-    #[error(
-        "sampling {percent} % of {of} points by `{sampler}` keeps only {points}; raise the percentage"
-    )]
+    #[error("sampling {of} points by `{sampler}` keeps only {points}; raise the percentage")]
     FewSamples {
         /// Points kept.
         points: usize,
         /// Points before.
         of: usize,
-        /// Percentage asked for.
-        percent: f64,
         /// Name of the sampler.
         sampler: &'static str,
     },
+    /// A sampler without a percentage.
+    #[error("the sampler `{0}` is to keep how many points? give the percentage with --sample")]
+    NoPercent(&'static str),
     /// A choice that the method has no use for.
     #[error("{choice} means nothing to the method `{method}`; leave it out, or choose {instead}")]
     NotForMethod {
@@ -140,12 +143,19 @@ impl Error {
     pub fn is_of_choices(&self) -> bool {
         matches!(
             self,
-            Self::NotForMethod { .. } | Self::NoVoxels | Self::NoPlate
+            Self::NotForMethod { .. }
+                | Self::NoVoxels
+                | Self::NoPlate
+                | Self::NoPercent(_)
+                | Self::Cloud(CloudError::PercentUnused | CloudError::RangesUnused(_))
         )
     }
 
     /// Whether the work was stopped on request, in whichever step.
     pub fn is_cancelled(&self) -> bool {
+        if let Self::Measure(error) = self {
+            return error.is_cancelled();
+        }
         matches!(
             self,
             Self::Cancelled(_)

@@ -35,6 +35,7 @@ mod after_care;
 mod check;
 mod choices;
 pub mod cli;
+mod compare;
 mod error;
 mod faults;
 mod left_out;
@@ -60,19 +61,23 @@ mod whole_file;
 
 pub use after_care::{AfterCare, AfterCareReport, Cavities, Holes, LeftHole, MOST_NAMED, care_for};
 pub use check::{Checked, Place, PrintCheck, check, check_walls, wall_thickness};
+pub use compare::{
+    CompareReport, CompareSettings, Compared, EdgeMidpointReport, SpreadReport, compare,
+    distances_to,
+};
 pub use error::Error;
 pub use faults::{Faults, find_faults};
 pub use metal::MetalReport;
 pub use mirror::{ChosenPlane, PlaneChoice, PlaneReport};
 pub use options::{Chosen, OptionsReport};
 pub use panics::hush_foreign_panics;
-pub use picture::{check_picture_target, write_histogram};
+pub use picture::{check_picture_target, write_distances, write_histogram};
 pub use preview::{Preview, PreviewReport, PreviewSurface};
 pub use region::{Mirror, RegionRequest, RegionResult, select_roi, select_rois};
 pub use region_report::{RegionReport, SolidReport, ThesisReport};
 pub use render::{Rendered, mesh_cloud, point_cloud, render, render_volume};
 pub use report::{CheckReport, LeftOutIslands, RenderReport, Seconds, check as check_topology};
-pub use settings::{AlphaRule, Method, Sampling, Settings};
+pub use settings::{AlphaRule, Method, Settings};
 pub use sidecar::{check_sidecar_target, sidecar_path, write_sidecar};
 pub use source::{Contents, Reading, Source};
 pub use thresholds::{
@@ -81,16 +86,22 @@ pub use thresholds::{
 };
 
 pub use bonemesh_cloud::{
-    CloudError, Frame, NormalSettings, Percent, PointCloud, Sampler, estimate_normals,
-    mean_neighbour_distance, sample,
+    CloudError, Frame, NormalSettings, NormalsIn, Percent, PointCloud, Sampler, Sampling,
+    SimilarityRanges, count_ranges, estimate_normals, mean_neighbour_distance, normal_similarity,
+    sample,
 };
 pub use bonemesh_delaunay::{DelaunayError, Points, Tetrahedra, tetrahedralize};
 pub use bonemesh_dicom::{DicomError, Gap, LeftOut, SeriesChoice, SeriesReport};
+pub use bonemesh_measure::{
+    MeasureError, ResidualVolume, Spread, compare_surfaces, edge_midpoints, heat_colours,
+    mesh_volume_mm3, residual_volume, tetrahedra_volume_mm3,
+};
 pub use bonemesh_mesh::{
     Decimated, Decimation, HoleLeft, HoleLimits, HoleReason, HolesFilled, Intersection,
     Intersections, Islands, Kept, MeshError, Outline, PatientFrame, Plane, RemovedPart, Smoothed,
     TriangleMesh, TriangleTree, check_target, decimate, fill_cavities, fill_holes,
     find_intersections, keep_islands, read_mesh, section, smooth, write_mesh, write_mesh_in,
+    write_with_colours,
 };
 pub use bonemesh_metal::{Metal, MetalError, Streaks, damp_metal, find_metal};
 pub use bonemesh_phantom::{

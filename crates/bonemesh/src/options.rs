@@ -1,6 +1,6 @@
 //! The options of a rendering as its report keeps them, so that it can be made again.
 
-use bonemesh_cloud::Sampler;
+use bonemesh_cloud::{Percent, Sampler, Sampling};
 use bonemesh_dicom::SeriesChoice;
 use bonemesh_mesh::Islands;
 use serde::Serialize;
@@ -87,7 +87,7 @@ impl Chosen {
 impl OptionsReport {
     /// What `settings` choose.
     pub fn of(settings: &Settings) -> Self {
-        let (sampling, care) = (settings.sampling, &settings.after_care);
+        let (sampling, care) = (settings.sampling.as_ref(), &settings.after_care);
         Self {
             threshold_hu: threshold(settings),
             local_leeway_hu: settings.local_leeway_hu,
@@ -99,9 +99,9 @@ impl OptionsReport {
             }),
             one_series: settings.one_series,
             crop: settings.crop.as_ref().map(ToString::to_string),
-            sample_percent: sampling.map(|s| s.percent.get()),
-            sampler: sampling.map_or(Sampler::Uniform, |s| s.sampler).name(),
-            seed: sampling.map_or(0, |s| s.seed),
+            sample_percent: sampling.and_then(Sampling::percent).map(Percent::get),
+            sampler: sampling.map_or(Sampler::Uniform, Sampling::sampler).name(),
+            seed: sampling.map_or(0, Sampling::seed),
             alpha_mm: match settings.alpha_rule {
                 AlphaRule::BoneVolume if settings.alpha_mm.is_none() => Some(Chosen::word("auto")),
                 _ => settings.alpha_mm.map(Chosen::Number),

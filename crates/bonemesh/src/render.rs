@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::path::Path;
 use std::time::Instant;
 
-use bonemesh_cloud::{Frame, PointCloud, extract_points, sample};
+use bonemesh_cloud::{Frame, PointCloud, Sampling, extract_points, sample};
 use bonemesh_mesh::TriangleMesh;
 use bonemesh_segment::{Mask, SegmentError, detect_edges, threshold};
 use bonemesh_surface::{IsosurfaceSettings, SurfaceError, isosurface, labelled_surface};
@@ -20,7 +20,7 @@ use crate::options::OptionsReport;
 use crate::report::{RenderReport, Seconds, check};
 use crate::source::{Reading, Source};
 use crate::thresholds::{chosen, leveled};
-use crate::{Error, Method, Sampling, Settings};
+use crate::{Error, Method, Settings};
 
 /// Fewer points enclose no space.
 const MIN_POINTS: usize = 4;
@@ -255,7 +255,7 @@ fn volume_to_cloud(
             sigma: settings.canny.sigma(),
         });
     }
-    let cloud = match settings.sampling {
+    let cloud = match &settings.sampling {
         Some(sampling) => sampled(&cloud, sampling, task)?,
         None => cloud,
     };
@@ -270,19 +270,13 @@ fn bone_mm3(mask: &Mask) -> f64 {
     voxels as f64 * voxel_mm3
 }
 
-fn sampled(cloud: &PointCloud, sampling: Sampling, task: &Task) -> Result<PointCloud, Error> {
-    let Sampling {
-        percent,
-        sampler,
-        seed,
-    } = sampling;
-    let kept = sample(cloud, sampler, percent, seed, task)?;
+fn sampled(cloud: &PointCloud, sampling: &Sampling, task: &Task) -> Result<PointCloud, Error> {
+    let kept = sample(cloud, sampling, task)?;
     if kept.len() < MIN_POINTS {
         return Err(Error::FewSamples {
             points: kept.len(),
             of: cloud.len(),
-            percent: percent.get(),
-            sampler: sampler.name(),
+            sampler: sampling.sampler().name(),
         });
     }
     Ok(cloud.subset(&kept))

@@ -3,7 +3,7 @@
 use std::num::NonZeroUsize;
 use std::str::FromStr;
 
-use bonemesh_cloud::{Percent, Sampler};
+use bonemesh_cloud::Sampling;
 use bonemesh_dicom::SeriesChoice;
 use bonemesh_segment::{
     CannySettings, HuThreshold, ThresholdChoice, ThresholdFinder, ThresholdPreset,
@@ -98,17 +98,6 @@ pub enum AlphaRule {
     MeanDistance,
     /// The alpha with which the tetrahedra have the volume of the bone's voxels.
     BoneVolume,
-}
-
-/// Which part of the points is kept, and how they are chosen.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sampling {
-    /// Part of the points to keep.
-    pub percent: Percent,
-    /// How they are chosen.
-    pub sampler: Sampler,
-    /// Seed of the random sampler.
-    pub seed: u64,
 }
 
 /// Everything a user can choose for one rendering.

@@ -11,7 +11,7 @@
 //! Limits: at most `u32::MAX` points, all finite; files keep millimetres but no lattice.
 //!
 //! ```
-//! use bonemesh_cloud::{Frame, Percent, Sampler, extract_points, mean_neighbour_distance, sample};
+//! use bonemesh_cloud::{Frame, Percent, Sampling, extract_points, mean_neighbour_distance, sample};
 //! use bonemesh_segment::EdgeMap;
 //! use bonemesh_task::Task;
 //! use bonemesh_volume::{Affine, Geometry};
@@ -28,7 +28,8 @@
 //!
 //! let two_nearest = mean_neighbour_distance(&cloud, 2, false, &task)?;
 //! assert!((two_nearest - 0.5).abs() < 1e-12);
-//! let kept = sample(&cloud, Sampler::Uniform, Percent::new(25.0)?, 0, &task)?;
+//! let quarter = Sampling::Uniform { percent: Percent::new(25.0)? };
+//! let kept = sample(&cloud, &quarter, &task)?;
 //! assert_eq!(kept.len(), 10);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -56,7 +57,10 @@ pub use io::{CloudFormat, check_target, read_cloud, write_cloud};
 pub use neighbours::mean_neighbour_distance;
 pub use normals::{NormalSettings, estimate_normals};
 pub use point_cloud::{Frame, Lattice, PointCloud};
-pub use sampling::{Percent, Sampler, sample};
+pub use sampling::{
+    NormalsIn, Percent, Sampler, Sampling, SimilarityRanges, count_ranges, normal_similarity,
+    sample,
+};
 
 /// What cannot be done with a cloud, and the remedy.
 #[non_exhaustive]
@@ -88,8 +92,33 @@ pub enum CloudError {
     #[error("{0} is no percentage to keep; choose a number above 0 and up to 100")]
     Percent(f64),
     /// A sampler that does not exist.
-    #[error("there is no sampler `{0}`; choose one of uniform, random, thesis-uniform")]
+    #[error(
+        "there is no sampler `{0}`; choose one of uniform, targeted, random, thesis-uniform, thesis-targeted"
+    )]
     Sampler(String),
+    /// A percentage for a sampler that has one for each range of similarity.
+    #[error(
+        "the sampler `thesis-targeted` takes a percentage for each range of similarity, not one for all; leave the percentage out, or choose `targeted`"
+    )]
+    PercentUnused,
+    /// Cells or ranges for a sampler that has none.
+    #[error(
+        "a grid, cut-offs and percentages of ranges mean nothing to the sampler `{0}`; leave them out, or choose `thesis-targeted`"
+    )]
+    RangesUnused(&'static str),
+    /// Cells of no pixels.
+    #[error("a cell of 0 pixels holds nothing; give a size of at least 1 pixel, such as 10")]
+    GridSize,
+    /// Ranges of similarity that leave gaps or overlap.
+    #[error(
+        "{0:?} are no cut-offs of similarity; give four rising numbers from 0 to at most 1, such as 0, 0.4, 0.6, 0.8"
+    )]
+    Cutoffs([f64; 4]),
+    /// Cells of pixels where there are no pixels.
+    #[error(
+        "the points are on no grid of pixels, so there are no cells for the sampler `thesis-targeted`; give the spacing of the points, or choose `targeted`"
+    )]
+    NoPixels,
     /// A file name whose ending names no format.
     #[error("{} ends in no format for clouds; name it .npy, .ply or .xyz", path.display())]
     Extension {

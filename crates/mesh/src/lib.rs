@@ -73,7 +73,7 @@ pub use holes::{HoleLeft, HoleLimits, HoleReason, HolesFilled, fill_holes};
 pub use intersections::{Intersection, Intersections, find_intersections};
 pub use io::{
     MeshFormat, PatientFrame, check_target, check_values_target, read_mesh, write_mesh,
-    write_mesh_in, write_with_values,
+    write_mesh_in, write_with_colours, write_with_values,
 };
 pub use mesh::TriangleMesh;
 pub use parts::{

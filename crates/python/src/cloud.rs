@@ -1,7 +1,7 @@
-//! Point clouds, their neighbourhoods and samples.
+//! Point clouds and their neighbourhoods.
 
-use bonemesh::{Error, Frame, Percent, PointCloud, Sampler, Settings};
-use numpy::{PyArray1, PyArray2};
+use bonemesh::{Error, Frame, PointCloud, Settings};
+use numpy::PyArray2;
 use pyo3::prelude::*;
 
 use crate::arrays::{Input, owned, rows};
@@ -84,40 +84,6 @@ pub(crate) fn mean_neighbour_distance(
         let mean = || bonemesh::mean_neighbour_distance(&cloud, k, include_self, task);
         Ok(pool.install(mean)?)
     })
-}
-
-/// Indices of the points to keep of a cloud, `(K,) uint32`.
-///
-/// `percent` is above 0 and at most 100, `sampler` "uniform", "random" or "thesis-uniform", `seed`
-/// decides the random one. `spacing_mm` as in `tetrahedralize`.
-#[pyfunction]
-#[pyo3(signature = (
-    points, *, percent, sampler="uniform", seed=0, spacing_mm=None, threads=None, progress=None,
-    cancel=None
-))]
-#[allow(clippy::too_many_arguments)] // keyword arguments, as Python has them
-pub(crate) fn sample<'py>(
-    py: Python<'py>,
-    points: &Bound<'py, PyAny>,
-    percent: f64,
-    sampler: &str,
-    seed: i128,
-    spacing_mm: Option<Spacing>,
-    threads: Option<Threads>,
-    progress: Option<Py<PyAny>>,
-    cancel: Option<&Cancel>,
-) -> PyResult<Bound<'py, PyArray1<u32>>> {
-    let watch = Watch::new(py, progress, cancel)?;
-    let percent = Percent::new(percent).map_err(|e| errors::unusable(py, e))?;
-    let sampler: Sampler = sampler.parse().map_err(|e| errors::unusable(py, e))?;
-    let seed = options::seed(py, seed)?;
-    let cloud = cloud(points, spacing_mm)?;
-    let threads = Threads::count(threads);
-    let kept = detached(py, watch, move |task| {
-        let pool = bonemesh::pool(threads)?;
-        Ok(pool.install(|| bonemesh::sample(&cloud, sampler, percent, seed, task))?)
-    })?;
-    owned(py, kept.into())
 }
 
 /// The cloud of an array of points: see [`point_set`].

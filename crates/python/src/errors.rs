@@ -141,7 +141,7 @@ pub(crate) fn raised(py: Python<'_>, error: &Error) -> PyErr {
     ours(py, &message, |types| match error {
         _ if is_argument(error) => &types.argument,
         Error::Dicom(_) => &types.dicom,
-        Error::Mesh(_) | Error::Surface(SurfaceError::Mesh(_)) => &types.mesh,
+        Error::Mesh(_) | Error::Measure(_) | Error::Surface(SurfaceError::Mesh(_)) => &types.mesh,
         _ => &types.base,
     })
 }
@@ -165,7 +165,7 @@ fn is_argument(error: &Error) -> bool {
                 | SegmentError::CannyThresholds { .. }
                 | SegmentError::Classes(_)
         ),
-        Error::Cloud(e) => matches!(e, CloudError::NeighbourCount(_)),
+        Error::Cloud(e) => matches!(e, CloudError::NeighbourCount(_) | CloudError::NoPixels),
         Error::Surface(SurfaceError::Delaunay(e)) => matches!(
             e,
             D::Alpha(_) | D::Coordinate { .. } | D::Span { .. } | D::Gram { .. }

@@ -14,6 +14,7 @@ mod cancel;
 mod check;
 mod cloud;
 mod command;
+mod compare;
 mod detach;
 mod edges;
 mod errors;
@@ -27,6 +28,7 @@ mod preview;
 mod region;
 mod render;
 mod report;
+mod sampling;
 mod section;
 mod series;
 mod surface;
@@ -51,9 +53,11 @@ mod _native {
     #[pymodule_export]
     use crate::check::{check, faults, wall_thickness};
     #[pymodule_export]
-    use crate::cloud::{mean_neighbour_distance, point_cloud, sample};
+    use crate::cloud::{mean_neighbour_distance, point_cloud};
     #[pymodule_export]
     use crate::command::main;
+    #[pymodule_export]
+    use crate::compare::{compare, signed_distances};
     #[pymodule_export]
     use crate::edges::canny;
     #[pymodule_export]
@@ -70,6 +74,8 @@ mod _native {
     use crate::region::{local_thickness, select_roi};
     #[pymodule_export]
     use crate::render::{methods, render};
+    #[pymodule_export]
+    use crate::sampling::{normal_similarity, sample, similarity_ranges};
     #[pymodule_export]
     use crate::section::section;
     #[pymodule_export]

@@ -3,10 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use bonemesh::{
-    AfterCare, AlphaRule, Decimation, Error, Method, Percent, Rendered, Sampler, Sampling,
-    Settings, Task,
-};
+use bonemesh::{AfterCare, AlphaRule, Decimation, Error, Method, Rendered, Settings, Task};
 use pyo3::prelude::*;
 
 use crate::after_care::{Closed, Filled, Kept};
@@ -15,6 +12,7 @@ use crate::detach::{Watch, detached};
 use crate::errors;
 use crate::mesh::Mesh;
 use crate::options::{self, Alpha, Choice, Crop, Threads, Threshold};
+use crate::sampling;
 use crate::volume::Volume;
 
 /// What is rendered.
@@ -46,7 +44,8 @@ pub(crate) fn methods() -> Vec<&'static str> {
 /// - `series`: UID or number (1 is the largest) where a folder holds several.
 /// - `one_series`: all slices that fit together are one series, whatever UIDs they name.
 /// - `crop`: "I0:I1,J0:J1,K0:K1" or three pairs: columns, rows, slices, from 0, ends not included.
-/// - `sample_percent`, `sampler`, `seed`: use only a part of the points; None uses all.
+/// - `sample_percent`, `sampler`, `seed`: use only a part of the points, as `sample` does; None uses all, but with
+///   "thesis-targeted", which has percentages of its own.
 /// - `alpha_mm`: largest circumradius; None takes the mean distance to 100 neighbours, "auto" the one
 ///   with which the mesh has the volume of the bone's voxels (`report["alpha_coefficient"]`).
 /// - `radii_mm`: of ball pivoting; None takes 3 and 6 times the mean distance to the nearest point.
@@ -109,12 +108,13 @@ pub(crate) fn render(
     cancel: Option<&Cancel>,
 ) -> PyResult<Mesh> {
     let watch = Watch::new(py, progress, cancel)?;
+    let sampling = sampling::chosen(py, sampler, sample_percent, seed, None)?;
     let mut settings = Settings {
         local_leeway_hu,
         canny: options::canny(py, sigma, None)?,
         method: match method {
             Some(name) => name.parse().map_err(|e| errors::unusable(py, e))?,
-            None => Method::unless_named(alpha_mm.is_some() || sample_percent.is_some()),
+            None => Method::unless_named(alpha_mm.is_some() || sampling.is_some()),
         },
         alpha_mm: alpha_mm.and_then(Alpha::mm),
         alpha_rule: match alpha_mm {
@@ -141,7 +141,7 @@ pub(crate) fn render(
                 error_mm: decimate_mm,
             },
         },
-        sampling: sampling(py, sample_percent, sampler, seed)?,
+        sampling,
         threads: Threads::count(threads),
         ..Settings::default()
     };
@@ -180,23 +180,4 @@ fn source(value: &Bound<'_, PyAny>, settings: &Settings) -> PyResult<Source> {
         let remedy = "give the path of a CT folder or file, or a bonemesh.Volume";
         errors::argument(py, &format!("path_or_volume is {kind}; {remedy}"))
     })
-}
-
-fn sampling(
-    py: Python<'_>,
-    percent: Option<f64>,
-    sampler: &str,
-    seed: i128,
-) -> PyResult<Option<Sampling>> {
-    let sampler: Sampler = sampler.parse().map_err(|e| errors::unusable(py, e))?;
-    let seed = options::seed(py, seed)?;
-    let Some(percent) = percent else {
-        return Ok(None);
-    };
-    let percent = Percent::new(percent).map_err(|e| errors::unusable(py, e))?;
-    Ok(Some(Sampling {
-        percent,
-        sampler,
-        seed,
-    }))
 }

@@ -18,6 +18,7 @@
 //! # Ok::<(), bonemesh_task::Cancelled>(())
 //! ```
 
+mod foreign;
 mod pool;
 mod sum;
 

@@ -3,7 +3,7 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use bonemesh_cloud::{CloudFormat, Frame, Percent, Sampler};
+use bonemesh_cloud::{CloudFormat, Frame};
 use bonemesh_dicom::SeriesChoice;
 use bonemesh_mesh::MeshFormat;
 use bonemesh_segment::{CannySettings, LocalThreshold, ThresholdChoice, ThresholdPreset};
@@ -12,12 +12,15 @@ use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::after_care::{AfterCareArguments, Repair};
+use super::compare::CompareArguments;
 use super::histogram::HistogramArguments;
 use super::mesh_file::FileArguments;
 use super::phantom::PhantomArguments;
 use super::roi::{Mirror, Roi};
+use super::sampling::SamplingArguments;
 use super::surface::{AlphaChoice, StudyArguments};
-use crate::settings::{AlphaRule, Method, Sampling, Settings};
+use crate::Error;
+use crate::settings::{AlphaRule, Method, Settings};
 
 /// Turns a folder of CT images into a mesh of the bone, and a selection on it into a region.
 #[derive(Debug, Parser)]
@@ -48,6 +51,8 @@ pub(super) enum Command {
     Mirror(Mirror),
     /// Check whether a mesh can be printed: closed, manifold, no self-intersections, thinnest wall.
     Check(Check),
+    /// Compare a mesh with a reference: distances, edge midpoints, residual volume.
+    Compare(CompareArguments),
     /// Care for a mesh: fill holes, take islands away, fill cavities, smooth, take triangles away.
     Repair(Repair),
     /// Write a phantom as a DICOM CT series, with its truth beside it.
@@ -100,19 +105,6 @@ pub(super) struct EdgeArguments {
     /// Worker threads; the result does not depend on it.
     #[arg(long, allow_negative_numbers = true, value_parser = count)]
     threads: Option<NonZeroUsize>,
-}
-
-#[derive(Debug, Args)]
-struct SamplingArguments {
-    /// Keep this percentage of the points (above 0, at most 100).
-    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true, value_parser = percent)]
-    sample: Option<Percent>,
-    /// How the kept points are chosen: uniform, random or thesis-uniform.
-    #[arg(long, default_value = "uniform", requires = "sample")]
-    sampler: Sampler,
-    /// Seed of the random sampler.
-    #[arg(long, default_value_t = 0, requires = "sample")]
-    seed: u64,
 }
 
 #[derive(Debug, Args)]
@@ -226,11 +218,14 @@ pub(super) struct MeshArguments {
 
 impl EdgeArguments {
     /// The settings for rendering with `surface`.
-    pub(super) fn settings(&self, surface: Option<&SurfaceArguments>) -> Settings {
-        let sampling = self.sampling.settings();
+    ///
+    /// # Errors
+    /// Those of the sampling.
+    pub(super) fn settings(&self, surface: Option<&SurfaceArguments>) -> Result<Settings, Error> {
+        let sampling = self.sampling.chosen()?;
         let of_surface = |s: &SurfaceArguments| s.settings(sampling.is_some());
         let made = surface.map(of_surface).unwrap_or_default();
-        Settings {
+        let settings = Settings {
             local_leeway_hu: self.local,
             canny: self.sigma,
             crop: self.crop.clone(),
@@ -239,30 +234,23 @@ impl EdgeArguments {
             sampling,
             threads: self.threads,
             ..made
-        }
-        .with_threshold(self.hu)
-    }
-}
-
-impl SamplingArguments {
-    fn settings(&self) -> Option<Sampling> {
-        self.sample.map(|percent| Sampling {
-            percent,
-            sampler: self.sampler,
-            seed: self.seed,
-        })
+        };
+        Ok(settings.with_threshold(self.hu))
     }
 }
 
 impl Render {
     /// All settings of a rendering.
-    pub(super) fn settings(&self) -> Settings {
-        Settings {
+    ///
+    /// # Errors
+    /// Those of the sampling.
+    pub(super) fn settings(&self) -> Result<Settings, Error> {
+        Ok(Settings {
             true_edges: !self.voxels.at_threshold,
             leave_out_table: !self.voxels.keep_table,
             damp_metal: self.voxels.damp_metal,
-            ..self.edges.settings(Some(&self.surface))
-        }
+            ..self.edges.settings(Some(&self.surface))?
+        })
     }
 }
 
@@ -312,10 +300,6 @@ fn leeway_hu(text: &str) -> Result<f64, String> {
 pub(super) fn count(text: &str) -> Result<NonZeroUsize, String> {
     let refused = |_| format!("`{text}` is no number of them; use a whole number from 1");
     text.parse().map_err(refused)
-}
-
-fn percent(text: &str) -> Result<Percent, String> {
-    Percent::new(number(text)?).map_err(|e| e.to_string())
 }
 
 pub(super) fn length_mm(text: &str) -> Result<f64, String> {

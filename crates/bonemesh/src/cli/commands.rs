@@ -13,7 +13,7 @@ use super::arguments::{Check, CloudArguments, Command, Info, MeshArguments, Rend
 use super::mesh_file::FileArguments;
 use super::output::Answer;
 use super::phantom::PhantomArguments;
-use super::{after_care, histogram, region, text};
+use super::{after_care, compare, histogram, region, text};
 use crate::render::{Rendered, mesh_cloud, point_cloud, render};
 use crate::source::{Reading, Source};
 use crate::thresholds::choose_threshold;
@@ -33,6 +33,7 @@ pub(super) fn run(command: &Command, task: &Task) -> Result<Answer, Error> {
         Command::Roi(arguments) => region::cut(arguments, task),
         Command::Mirror(arguments) => region::mirror(arguments, task),
         Command::Check(arguments) => run_check(arguments, task),
+        Command::Compare(arguments) => compare::run(arguments, task),
         Command::Repair(arguments) => after_care::run(arguments, task),
         Command::Phantom(arguments) => run_phantom(arguments, task),
     }
@@ -52,7 +53,7 @@ fn info(arguments: &Info, task: &Task) -> Result<Answer, Error> {
 
 fn run_render(arguments: &Render, task: &Task) -> Result<Answer, Error> {
     arguments.file.check(&arguments.output)?;
-    let rendered = render(&arguments.directory, &arguments.settings(), task)?;
+    let rendered = render(&arguments.directory, &arguments.settings()?, task)?;
     save(rendered, &arguments.output, &arguments.file, task)
 }
 
@@ -83,7 +84,7 @@ fn save(
 
 fn run_cloud(arguments: &CloudArguments, task: &Task) -> Result<Answer, Error> {
     bonemesh_cloud::check_target(&arguments.output)?;
-    let settings = arguments.edges.settings(None);
+    let settings = arguments.edges.settings(None)?;
     let workers = pool(settings.threads)?;
     let Reading { volume, series } = workers.install(|| {
         let source = Source::open(&arguments.directory, settings.one_series, task)?;

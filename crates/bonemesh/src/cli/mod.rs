@@ -6,6 +6,7 @@
 mod after_care;
 mod arguments;
 mod commands;
+mod compare;
 mod histogram;
 mod mesh_file;
 mod output;
@@ -13,6 +14,7 @@ mod phantom;
 mod progress;
 mod region;
 mod roi;
+mod sampling;
 mod surface;
 mod text;
 

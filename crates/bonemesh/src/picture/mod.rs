@@ -4,6 +4,7 @@
 //! as lines with their names, the recommended one in red, those of the literature dashed.
 
 mod canvas;
+mod distances;
 
 use std::io;
 use std::path::Path;
@@ -11,6 +12,8 @@ use std::path::Path;
 use crate::Error;
 use crate::thresholds::{HistogramReport, SuggestionReport};
 use crate::whole_file::{probe, write_whole};
+pub use distances::write_distances;
+
 use canvas::{Canvas, Colour, TEXT_HEIGHT, text_width};
 
 const WIDTH: usize = 1200;
@@ -160,7 +163,7 @@ fn axes(canvas: &mut Canvas, scale: &Scale) {
         canvas.write(&label, column, row - TEXT_HEIGHT / 2, INK);
     }
     canvas.write("voxels", GAP, top - TEXT_HEIGHT - GAP, INK);
-    let step = tick_step(scale.hu[1] - scale.hu[0]);
+    let step = tick_step((scale.hu[1] - scale.hu[0]).max(10.0));
     let mut tick = (scale.hu[0] / step).ceil() * step;
     while tick <= scale.hu[1] {
         let column = scale.column(tick);
@@ -192,7 +195,7 @@ fn counted(decade: u32) -> String {
 
 /// A round distance of ticks, of which about ten fit.
 fn tick_step(range: f64) -> f64 {
-    let rough = (range / 10.0).max(1.0);
+    let rough = range / 10.0;
     let power = 10.0_f64.powf(rough.log10().floor());
     [1.0, 2.0, 5.0, 10.0]
         .map(|m| m * power)

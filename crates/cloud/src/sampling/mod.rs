@@ -1,18 +1,24 @@
 //! Thinning a cloud.
 
+mod choice;
 mod contours;
+mod lines;
 mod random;
 mod remaining;
+mod similarity;
 mod slices;
+mod spread;
+mod targeted;
+mod thesis_targeted;
 mod thesis_uniform;
 mod uniform;
-
-use std::fmt;
-use std::str::FromStr;
 
 use bonemesh_task::Task;
 
 use crate::{CloudError, PointCloud};
+pub use choice::{Sampler, Sampling};
+pub use similarity::{NormalsIn, normal_similarity};
+pub use thesis_targeted::{SimilarityRanges, count_ranges};
 
 /// A part to keep, above 0 and up to 100 percent.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
@@ -42,72 +48,31 @@ impl Percent {
     }
 }
 
-/// How points are chosen.
-#[non_exhaustive]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Sampler {
-    /// Evenly along the contours of each slice.
-    #[default]
-    Uniform,
-    /// By lot, each point with the same chance.
-    Random,
-    /// The published pseudo-uniform way: ten neighbours at a time, of which some are kept.
-    ///
-    /// Percentages act in steps of ten (25 keeps 20, 9 keeps almost nothing) and gaps remain.
-    ThesisUniform,
-}
-
-impl Sampler {
-    /// Every sampler.
-    pub const ALL: [Self; 3] = [Self::Uniform, Self::Random, Self::ThesisUniform];
-
-    /// The name by which it is chosen.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Uniform => "uniform",
-            Self::Random => "random",
-            Self::ThesisUniform => "thesis-uniform",
-        }
-    }
-}
-
-impl fmt::Display for Sampler {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for Sampler {
-    type Err = CloudError;
-
-    fn from_str(name: &str) -> Result<Self, CloudError> {
-        Self::ALL
-            .into_iter()
-            .find(|sampler| sampler.name() == name)
-            .ok_or_else(|| CloudError::Sampler(name.to_owned()))
-    }
-}
-
-/// The indices of the points to keep, ascending; the same `seed` keeps the same points.
+/// The indices of the points to keep, ascending.
 ///
-/// Only [`Sampler::Random`] draws lots. An empty cloud keeps nothing.
+/// Only [`Sampling::Random`] draws lots; the same seed keeps the same points. An empty cloud keeps
+/// nothing.
 ///
 /// # Errors
+/// [`CloudError::NoPixels`] for [`Sampling::ThesisTargeted`] without a lattice,
 /// [`CloudError::Cancelled`].
 pub fn sample(
     cloud: &PointCloud,
-    sampler: Sampler,
-    percent: Percent,
-    seed: u64,
+    sampling: &Sampling,
     task: &Task,
 ) -> Result<Vec<u32>, CloudError> {
     task.begin("sample", cloud.len());
     task.check()?;
-    let mut kept = match sampler {
-        Sampler::Random => random::keep(cloud.len(), percent, seed),
-        Sampler::ThesisUniform => thesis_uniform::keep(cloud, percent, task)?,
-        Sampler::Uniform => uniform::keep(cloud, percent, task)?,
+    let mut kept = match sampling {
+        Sampling::Uniform { percent } => uniform::keep(cloud, *percent, task)?,
+        Sampling::Targeted { percent } => targeted::keep(cloud, *percent, task)?,
+        Sampling::Random { percent, seed } => random::keep(cloud.len(), *percent, *seed),
+        Sampling::ThesisUniform { percent } => thesis_uniform::keep(cloud, *percent, task)?,
+        Sampling::ThesisTargeted(ranges) => thesis_targeted::keep(cloud, ranges, task)?,
     };
     kept.sort_unstable();
     Ok(kept)
 }
+
+#[cfg(test)]
+mod tests;

@@ -58,6 +58,21 @@ impl<'a> Slices<'a> {
         }
     }
 
+    /// Where one point lies in the plane of its slice, in mm along two axes at right angles.
+    pub(super) fn in_plane_mm(&self, point: u32) -> [f64; 2] {
+        let point = point as usize;
+        let Some(lattice) = self.cloud.lattice() else {
+            let [x, y, _] = self.cloud.points_mm()[point];
+            return [x, y];
+        };
+        let [column, row, _] = lattice.coordinates[point].map(f64::from);
+        let gram = lattice.frame_from_lattice.gram();
+        let along = gram[0][0].sqrt();
+        let slant = gram[0][1] / along;
+        let across = (gram[1][1] - slant * slant).max(0.0).sqrt();
+        [column * along + row * slant, row * across]
+    }
+
     /// `(column, row)` of lattice points whose rows and columns are at right angles.
     pub(super) fn pixels(&self, members: &[u32]) -> Option<Vec<[i32; 2]>> {
         let lattice = self.cloud.lattice().filter(|_| self.is_lattice)?;

@@ -32,7 +32,8 @@ pub(super) fn keep(
     Ok(kept.concat())
 }
 
-fn keep_of_slice(
+/// The numbers to keep of the points of one slice, or of a part of it.
+pub(super) fn keep_of_slice(
     places: &[[f64; 3]],
     metric: [f64; 3],
     percent: Percent,
@@ -71,7 +72,7 @@ fn kept_ranks(group: usize, percent: Percent) -> impl Iterator<Item = usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Lattice, Sampler, sample};
+    use crate::{Lattice, Sampling, sample};
     use bonemesh_volume::Affine;
     use proptest::prelude::*;
 
@@ -119,7 +120,12 @@ mod tests {
 
     fn keep_sorted(cloud: &PointCloud, percent: f64) -> Vec<u32> {
         let percent = Percent::new(percent).unwrap();
-        sample(cloud, Sampler::ThesisUniform, percent, 0, &Task::default()).unwrap()
+        sample(
+            cloud,
+            &Sampling::ThesisUniform { percent },
+            &Task::default(),
+        )
+        .unwrap()
     }
 
     fn cloud(coordinates: Vec<[i32; 3]>, spacing: [f64; 3]) -> PointCloud {

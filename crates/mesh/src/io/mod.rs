@@ -160,18 +160,52 @@ pub fn write_with_values(
     of_vertices: &[f64],
     task: &Task,
 ) -> Result<(), MeshError> {
-    let path = path.as_ref();
+    let values = ply_write::Values {
+        name,
+        of_vertices,
+        colours: None,
+    };
+    write_values(path.as_ref(), mesh, values, task)
+}
+
+/// [`write_with_values`] with a colour (red, green, blue) for each vertex as well.
+///
+/// # Errors
+/// Those of [`write_with_values`]; [`MeshError::Values`] also unless there are as many colours.
+pub fn write_with_colours(
+    path: impl AsRef<Path>,
+    mesh: &TriangleMesh,
+    name: &str,
+    of_vertices: &[f64],
+    colours: &[[u8; 3]],
+    task: &Task,
+) -> Result<(), MeshError> {
+    let values = ply_write::Values {
+        name,
+        of_vertices,
+        colours: Some(colours),
+    };
+    write_values(path.as_ref(), mesh, values, task)
+}
+
+fn write_values(
+    path: &Path,
+    mesh: &TriangleMesh,
+    values: ply_write::Values<'_>,
+    task: &Task,
+) -> Result<(), MeshError> {
     check_values_target(path)?;
     check_writable(path, mesh)?;
     let vertices = mesh.vertices_mm().len();
-    if of_vertices.len() != vertices {
-        let values = of_vertices.len();
-        return Err(MeshError::Values { values, vertices });
+    let colours = values.colours.map_or(vertices, <[_]>::len);
+    for values in [values.of_vertices.len(), colours] {
+        if values != vertices {
+            return Err(MeshError::Values { values, vertices });
+        }
     }
     task.begin("write", mesh.triangles().len());
-    let values = Some(ply_write::Values { name, of_vertices });
     atomic::write(path, |file| {
-        ply_write::write(file, mesh, PatientFrame::Lps, values, task)
+        ply_write::write(file, mesh, PatientFrame::Lps, Some(values), task)
     })
 }
 

@@ -15,7 +15,12 @@ pub(super) struct Values<'a> {
     /// The name of its property.
     pub(super) name: &'a str,
     pub(super) of_vertices: &'a [f64],
+    /// A colour for each vertex, if it has one.
+    pub(super) colours: Option<&'a [[u8; 3]]>,
 }
+
+/// The properties of colours, by the names that viewers know.
+const COLOURS: &str = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
 
 /// Writes the header, all vertices, with their values if there are any, and all triangles.
 pub(super) fn write(
@@ -25,7 +30,11 @@ pub(super) fn write(
     values: Option<Values<'_>>,
     task: &Task,
 ) -> Result<(), Fault> {
-    let property = values.map(|values| format!("property float {}\n", values.name));
+    let colours = values.and_then(|values| values.colours);
+    let property = values.map(|values| {
+        let of_colours = colours.map_or("", |_| COLOURS);
+        format!("property float {}\n{of_colours}", values.name)
+    });
     let header = format!(
         "ply\nformat binary_little_endian 1.0\ncomment {}\ncomment made by Bonemesh\n\
          element vertex {}\nproperty float x\nproperty float y\nproperty float z\n{}\
@@ -44,6 +53,7 @@ pub(super) fn write(
             for value in place_mm.iter().copied().chain(value) {
                 bytes.extend_from_slice(&(value as f32).to_le_bytes());
             }
+            bytes.extend(colours.iter().flat_map(|colours| colours[vertex]));
         }
         file.write_all(&bytes)?;
         task.check()?;

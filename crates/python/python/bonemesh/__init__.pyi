@@ -28,6 +28,7 @@ __all__ = [
     "alpha_surface",
     "canny",
     "check",
+    "compare",
     "decimate",
     "face_outward",
     "faults",
@@ -42,6 +43,7 @@ __all__ = [
     "mean_neighbour_distance",
     "methods",
     "mirror",
+    "normal_similarity",
     "phantom",
     "point_cloud",
     "read_mesh",
@@ -51,6 +53,8 @@ __all__ = [
     "scan",
     "section",
     "select_roi",
+    "signed_distances",
+    "similarity_ranges",
     "smooth",
     "suggest_thresholds",
     "symmetry_plane",
@@ -67,7 +71,9 @@ _Progress: TypeAlias = Callable[[str, float], object]
 # Columns, rows, slices, each (first, end).
 _Crop: TypeAlias = str | Sequence[tuple[SupportsIndex, SupportsIndex]]
 _Anatomical: TypeAlias = Literal["axial", "coronal", "sagittal"]
-_Sampler: TypeAlias = Literal["uniform", "random", "thesis-uniform"]
+_Sampler: TypeAlias = Literal[
+    "uniform", "targeted", "random", "thesis-uniform", "thesis-targeted"
+]
 # A threshold in place of a number of Hounsfield units; 350 where none is given.
 _Threshold: TypeAlias = Literal[
     "auto",
@@ -426,14 +432,55 @@ def mean_neighbour_distance(
 def sample(
     points: npt.ArrayLike,
     *,
-    percent: float,
+    percent: float | None = None,
     sampler: _Sampler = "uniform",
     seed: SupportsIndex = 0,
     spacing_mm: Sequence[float] | None = None,
+    grid_px: SupportsIndex | None = None,
+    cutoffs: Sequence[float] | None = None,
+    percentages: Sequence[float] | None = None,
     threads: SupportsIndex | None = None,
     progress: _Progress | None = None,
     cancel: Cancel | None = None,
 ) -> npt.NDArray[np.uint32]: ...
+def similarity_ranges(
+    points: npt.ArrayLike,
+    *,
+    grid_px: SupportsIndex | None = None,
+    cutoffs: Sequence[float] | None = None,
+    spacing_mm: Sequence[float] | None = None,
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> list[int]: ...
+def normal_similarity(
+    points: npt.ArrayLike,
+    *,
+    normals: Literal["plane", "space"] = "plane",
+    neighbours: SupportsIndex | None = None,
+    spacing_mm: Sequence[float] | None = None,
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> float: ...
+def compare(
+    mesh: Mesh,
+    reference: Mesh,
+    *,
+    samples: SupportsIndex = 100_000,
+    residual: bool = True,
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> dict[str, Any]: ...
+def signed_distances(
+    points: npt.ArrayLike,
+    reference: Mesh,
+    *,
+    threads: SupportsIndex | None = None,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> npt.NDArray[np.float64]: ...
 def tetrahedralize(
     points: npt.ArrayLike,
     *,

@@ -1,14 +1,10 @@
 //! What two bodies have in common.
 
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::time::Duration;
-
 use bonemesh_mesh::TriangleMesh;
 use bonemesh_task::{Cancelled, Task};
 use manifold_rust::cancel::CancelToken;
 use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{BooleanEngine, Error, MeshGL64, OpType};
-use rayon::ThreadPoolBuilder;
 
 use crate::RoiError;
 use crate::vector::{Vector, plus_scaled};
@@ -16,8 +12,6 @@ use crate::vector::{Vector, plus_scaled};
 /// Shorter edges at the cut are collapsed: in a file's 32-bit coordinates they would make triangles meet. By
 /// try: the larger, the more of the front goes with them.
 const TOLERANCES_MM: [f64; 4] = [1e-4, 1e-4, 4e-4, 1.6e-3];
-/// How often the cancel switch is looked at.
-const LOOK_EVERY: Duration = Duration::from_millis(20);
 
 /// A closed surface.
 pub(super) struct Body {
@@ -69,7 +63,7 @@ impl Stock {
     /// [`RoiError::Open`] for a body that is not closed, [`RoiError::Cut`], or the work was cancelled.
     pub(super) fn of(body: Body, task: &Task) -> Result<Self, RoiError> {
         let id = Manifold::reserve_ids(1);
-        let made = unless_cancelled(task, move || {
+        let made = task.leaving(move || {
             let mesh = exported(&body, id, TOLERANCES_MM[0]);
             let strict = Manifold::from_mesh_gl64(&mesh);
             let is_manifold = strict.status() != Error::NotManifold;
@@ -117,63 +111,21 @@ impl Stock {
         } else {
             BooleanEngine::Robust
         };
-        let cut = until_cancelled(task, |token| {
-            let operation = OpType::Intersect;
-            self.body
-                .boolean_with_engine_and_token(&cutter, operation, engine, Some(token))
-        })?;
+        let token = CancelToken::new();
+        let cut = task.stopping(
+            || token.cancel(),
+            || {
+                let operation = OpType::Intersect;
+                self.body
+                    .boolean_with_engine_and_token(&cutter, operation, engine, Some(&token))
+            },
+        )?;
         match cut.status() {
             Error::NoError => Ok(imported(&cut, self.id)),
             Error::Cancelled => Err(Cancelled.into()),
             other => Err(RoiError::Cut(other.to_str())),
         }
     }
-}
-
-/// Does work that cannot be stopped, on threads of its own, which are left alone with it when it is cancelled.
-/// They may not be those that wait here: all of these might wait at once. `None` if it panicked.
-fn unless_cancelled<R: Send + 'static>(
-    task: &Task,
-    work: impl FnOnce() -> R + Send + 'static,
-) -> Result<Option<R>, Cancelled> {
-    let threads = ThreadPoolBuilder::new()
-        .num_threads(rayon::current_num_threads())
-        .panic_handler(|_| ());
-    let Ok(threads) = threads.build() else {
-        return Ok(None);
-    };
-    let (done, is_done) = channel();
-    threads.spawn(move || {
-        // Nobody waits for it any more where this fails.
-        let _ = done.send(work());
-    });
-    loop {
-        match is_done.recv_timeout(LOOK_EVERY) {
-            Ok(result) => return Ok(Some(result)),
-            Err(RecvTimeoutError::Timeout) => task.check()?,
-            Err(RecvTimeoutError::Disconnected) => return Ok(None),
-        }
-    }
-}
-
-/// Does work that can be stopped, and watches the cancel switch meanwhile.
-fn until_cancelled<R>(task: &Task, work: impl FnOnce(&CancelToken) -> R) -> Result<R, Cancelled> {
-    let token = &CancelToken::new();
-    let (done, is_done) = channel::<()>();
-    let result = std::thread::scope(|scope| {
-        scope.spawn(move || {
-            while is_done.recv_timeout(LOOK_EVERY) == Err(RecvTimeoutError::Timeout) {
-                if task.check().is_err() {
-                    token.cancel();
-                }
-            }
-        });
-        let result = work(token);
-        drop(done);
-        result
-    });
-    task.check()?;
-    Ok(result)
 }
 
 fn exported(body: &Body, id: u32, tolerance_mm: f64) -> MeshGL64 {
