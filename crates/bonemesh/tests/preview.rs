@@ -116,7 +116,7 @@ fn thresholds_that_leave_nothing_or_everything_are_refused_as_by_a_rendering() {
 #[test]
 fn it_does_not_depend_on_threads_and_can_be_stopped() {
     let scan = volume(120, |[i, j, k]| ((i * i + j * k) % 1_500) as i16 - 500);
-    let threads = |n| NonZeroUsize::new(n);
+    let threads = NonZeroUsize::new;
     let one = Preview::of(&scan, threads(1), &Task::default()).unwrap();
     let many = Preview::of(&scan, threads(5), &Task::default()).unwrap();
     let surface = |preview: &Preview, n| {
