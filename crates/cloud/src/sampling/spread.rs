@@ -77,7 +77,11 @@ impl Pairs {
         for (point, part) in walk.points.iter().zip(parts) {
             self.due += part;
             let apart = 0.5 * (1.0 - part.max(WITHIN_PAIR));
-            let moved = if self.taken.is_multiple_of(2) { apart } else { -apart };
+            let moved = if self.taken.is_multiple_of(2) {
+                apart
+            } else {
+                -apart
+            };
             let middle = self.taken as f64 + 0.5 + moved;
             if self.due + ROUNDING >= middle && kept.len() < wanted {
                 self.taken += 1;
