@@ -16,6 +16,7 @@ import numpy as np
 import study_models
 import study_pictures
 import study_sampling
+import study_tools
 from bench_machine import machine
 from study_report import Picture, Report
 from study_sampling import Study
@@ -191,6 +192,8 @@ def main() -> None:
     )
     models(report)
     sampling(report, scan, words.hu)
+    report.heading("Other programs")
+    report.add(study_tools.table_tools(words.folder, words.hu))
     report.text(f"Made in {time.perf_counter() - begun:.0f} s.")
     report.save()
 

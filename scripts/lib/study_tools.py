@@ -15,6 +15,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import bonemesh
 import numpy as np
@@ -23,7 +24,10 @@ from study_report import Cell, Table
 HERE = Path(__file__).parent
 INVESALIUS = Path("/usr/share/invesalius/app.py")
 BODIES = ["sphere-shell", "tube", "box-with-hole", "femur", "head"]
-SAMPLES = 20_000
+SAMPLES = 4_000
+# So many tell which way a mesh in a frame of its own lies, and so far off (mm) is one that needs it.
+FEW = 300
+MISPLACED_MM = 2.0
 MOST_SECONDS = 300
 
 
@@ -148,19 +152,25 @@ def topology(mesh: bonemesh.Mesh) -> str:
 
 
 def error_mm(mesh: bonemesh.Mesh, body: str) -> float:
-    """The mean distance of its vertices to the true surface, laid on it as fits best."""
+    """The mean distance of its vertices to the true surface; of a mesh in a frame of its own, laid on it as fits best."""
     truth = bonemesh.PhantomSurface(body)
+    points = mesh.vertices.astype(float)[:: max(1, len(mesh.vertices) // SAMPLES)]
+
+    def mean(places: Any) -> float:
+        return float(np.abs(truth.nearest(places)["distance_mm"]).mean())
+
+    as_it_lies = mean(points)
+    if as_it_lies < MISPLACED_MM:
+        return as_it_lies
     true_points = truth.samples(SAMPLES)
     middle = (true_points.min(axis=0) + true_points.max(axis=0)) / 2
-    points = mesh.vertices.astype(float)[:: max(1, len(mesh.vertices) // SAMPLES)]
-    own_middle = (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)).astype(
-        float
-    ) / 2
-    errors = [np.abs(truth.nearest(points)["distance_mm"]).mean()]
-    for signs in itertools.product((1, -1), repeat=3):
-        placed = (points - own_middle) * signs + middle
-        errors.append(np.abs(truth.nearest(placed)["distance_mm"]).mean())
-    return float(min(errors))
+    centred = points - (points.min(axis=0) + points.max(axis=0)) / 2
+    placings = [
+        centred * signs + middle for signs in itertools.product((1, -1), repeat=3)
+    ]
+    few = max(1, len(points) // FEW)
+    best = min(placings, key=lambda places: mean(places[::few]))
+    return min(as_it_lies, mean(best))
 
 
 def on_folder(name: str, folder: Path, hu: float, body: str | None) -> list[list[Cell]]:
