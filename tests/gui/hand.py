@@ -54,13 +54,11 @@ class Hand:
             self.event("A", "RELEASE")
         yield
 
-    def drag_with_ctrl(self, path: list[tuple[int, int]], button: str) -> Steps:
-        """Along the corners of a path with a button pressed, and Ctrl, which is held down first."""
+    def drag(self, path: list[tuple[int, int]]) -> Steps:
+        """Along the corners of a path with the left button pressed."""
         yield from self.move(*path[0])
-        self.event("LEFT_CTRL", "PRESS", ctrl=True)
+        self.event("LEFTMOUSE", "PRESS")
         yield from ticks(2)
-        self.event(button, "PRESS", ctrl=True)
-        yield
         for (x0, y0), (x1, y1) in itertools.pairwise(path):
             steps = max(1, round(max(abs(x1 - x0), abs(y1 - y0)) / DRAG_PX))
             for step in range(1, steps + 1):
@@ -68,9 +66,7 @@ class Hand:
                     x0 + (x1 - x0) * step // steps,
                     y0 + (y1 - y0) * step // steps,
                 )
-                self.event("MOUSEMOVE", "NOTHING", ctrl=True)
+                self.event("MOUSEMOVE", "NOTHING")
                 yield
-        self.event(button, "RELEASE", ctrl=True)
-        yield
-        self.event("LEFT_CTRL", "RELEASE")
+        self.event("LEFTMOUSE", "RELEASE")
         yield from ticks(2)

@@ -164,7 +164,7 @@ def a_region_is_selected_with_the_lasso(desk: Desk) -> Steps:
     middle = hand.place
     for _ in range(CLOSER):
         yield from hand.press("WHEELUPMOUSE")
-    yield from hand.press("TAB")
+    yield from desk.sidebar.click("bonemesh.start_lasso")
     yield from wait_until(lambda: bpy.context.mode == "EDIT_MESH", "Edit Mode", 60.0)
     yield from ticks(5)
     angles = (math.tau * step / 16 for step in range(17))
@@ -175,7 +175,7 @@ def a_region_is_selected_with_the_lasso(desk: Desk) -> Steps:
         )
         for angle in angles
     ]
-    yield from hand.drag_with_ctrl(around, "RIGHTMOUSE")
+    yield from hand.drag(around)
     bone = bpy.data.objects[BONE]
     yield from wait_until(lambda: selected(bone) > 0, "the lasso selects", 60.0)
     yield from ticks(10)
