@@ -6,6 +6,7 @@ from typing import Any
 
 import bmesh
 import bpy
+import gpu
 import numpy as np
 import stage
 from mathutils import Euler
@@ -13,9 +14,7 @@ from mathutils import Euler
 
 def make_gpu_context(folder: Path) -> None:
     """Selecting on the screen needs a GPU context, which a background Blender makes only on demand."""
-    if bpy.app.version >= (5, 0):
-        import gpu
-
+    if hasattr(gpu, "init"):  # Blender 5.0 does not have it yet
         gpu.init()
         return
     scene = bpy.context.scene
