@@ -4,7 +4,9 @@ use std::collections::HashMap;
 use std::num::NonZeroUsize;
 use std::time::Instant;
 
-use bonemesh_mesh::{HoleLimits, TriangleMesh, face_outward, fill_holes};
+use bonemesh_mesh::{
+    HoleLimits, TriangleMesh, TriangleTree, face_outward, fill_holes, find_intersections,
+};
 use bonemesh_roi::{
     ClearanceMm, Direction, Method, RoiError, Solid, SolidRequest, ThicknessMm, counterparts,
     select_region, select_solid, select_solids,
@@ -203,20 +205,12 @@ fn opposite_solids(
     if let Direction::Along(direction) = request.direction {
         request.direction = Direction::along(chosen.plane.mirrored_direction(direction))?;
     }
-    let found = counterparts(mesh, &selected, &chosen.plane, task)?;
-    let mut solids = Vec::new();
-    let mut mended = Mended::default();
-    for side in &found.sides {
-        let (cut, done) = with_mesh_mended(mesh, side, &request, is_each, task)?;
-        solids.extend(cut);
-        mended = done;
-    }
+    let plane = &chosen.plane;
+    let found = counterparts(mesh, &selected, plane, request.with_hidden, task)?;
+    let (solids, mut mended) = of_sides(mesh, &found.sides, &mut request, is_each, task)?;
     mended.turned_triangles += faced.turned;
-    if !is_each {
-        solids = joined(solids)?.into_iter().collect();
-    }
     let placed = |mut solid: Solid| {
-        solid.dropped += found.missing;
+        solid.dropped += found.left_out;
         if mirror.back {
             solid.mesh = solid.mesh.mirrored(&chosen.plane);
         }
@@ -225,29 +219,55 @@ fn opposite_solids(
     Ok(solids.into_iter().map(placed).collect())
 }
 
-/// Several solids as one; `None` of none.
-fn joined(solids: Vec<Solid>) -> Result<Option<Solid>, Error> {
-    let mut solids = solids.into_iter();
-    let Some(mut first) = solids.next() else {
-        return Ok(None);
-    };
-    let (mut vertices_mm, mut triangles) = std::mem::take(&mut first.mesh).into_parts();
-    for solid in solids {
-        first.selected += solid.selected;
-        first.patch_mm2 += solid.patch_mm2;
-        first.dropped += solid.dropped;
-        first.closed += solid.closed;
-        first.gap_mm = [first.gap_mm, solid.gap_mm]
-            .into_iter()
-            .flatten()
-            .reduce(f64::min);
-        let next = vertices_mm.len() as u32;
-        let (places, corners) = solid.mesh.into_parts();
-        vertices_mm.extend(places);
-        triangles.extend(corners.into_iter().map(|t| t.map(|v| next + v)));
+/// Each side cut on its own, as the eye before it means it; all together where solids would meet or hidden pieces
+/// count.
+fn of_sides(
+    mesh: &TriangleMesh,
+    sides: &[Vec<u32>],
+    request: &mut SolidRequest,
+    is_each: bool,
+    task: &Task,
+) -> Result<(Vec<Solid>, Mended), Error> {
+    if sides.len() > 1 && !request.with_hidden {
+        let mut solids = Vec::new();
+        let mut mended = Mended::default();
+        for side in sides {
+            let (cut, done) = with_mesh_mended(mesh, side, request, is_each, task)?;
+            solids.extend(cut);
+            mended = done;
+        }
+        let whole = joined(&solids)?;
+        if find_intersections(&TriangleTree::new(&whole.mesh, task)?, 1, task)?.count == 0 {
+            let solids = if is_each { solids } else { vec![whole] };
+            return Ok((solids, mended));
+        }
+        // What is hidden was left out with its side.
+        request.with_hidden = true;
     }
-    first.mesh = TriangleMesh::new(vertices_mm, triangles)?;
-    Ok(Some(first))
+    let mut all = sides.concat();
+    all.sort_unstable();
+    all.dedup();
+    with_mesh_mended(mesh, &all, request, is_each, task)
+}
+
+/// Several solids as one.
+fn joined(solids: &[Solid]) -> Result<Solid, Error> {
+    let mut whole = solids.first().ok_or(RoiError::NothingCut)?.clone();
+    let (mut vertices_mm, mut triangles) = std::mem::take(&mut whole.mesh).into_parts();
+    for solid in &solids[1..] {
+        whole.selected += solid.selected;
+        whole.patch_mm2 += solid.patch_mm2;
+        whole.dropped += solid.dropped;
+        whole.closed += solid.closed;
+        let gaps = [whole.gap_mm, solid.gap_mm].into_iter().flatten();
+        whole.gap_mm = gaps.reduce(f64::min);
+        let next = vertices_mm.len() as u32;
+        vertices_mm.extend(solid.mesh.vertices_mm());
+        let corners = solid.mesh.triangles().iter();
+        triangles.extend(corners.map(|t| t.map(|v| next + v)));
+    }
+    whole.mesh = TriangleMesh::new(vertices_mm, triangles)?;
+    Ok(whole)
 }
 
 /// Cuts; where that fails as it does on a surface that is open or does not face outward, joins vertices at one

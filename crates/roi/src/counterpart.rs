@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use bonemesh_mesh::{Plane, Sets, TriangleMesh};
+use bonemesh_mesh::{Plane, Sets, TriangleMesh, TriangleTree};
 use bonemesh_task::Task;
 
 use crate::RoiError;
@@ -20,6 +20,9 @@ const CELL_MM: f64 = 0.5;
 const MOST_CELLS: f64 = 4e6;
 /// Gaps in the area up to twice as wide (mm) are closed.
 const GAP_MM: f64 = 1.5;
+/// Triangles of a piece that are looked at to tell whether something lies before it, and how far (mm) before each.
+const SAMPLES: usize = 32;
+const BEFORE_MM: f64 = 1e-3;
 /// Cosine of the most that pieces looked at together face apart.
 const SAME_SIDE: f64 = 0.5;
 /// How much deeper or higher (mm) than the selection the other side may be.
@@ -30,13 +33,15 @@ const UNEVEN_MM: f64 = 10.0;
 pub struct Counterparts {
     /// The vertices opposite to each part of the selection that faces about one way, ascending.
     pub sides: Vec<Vec<u32>>,
-    /// Such parts that nothing lies opposite to.
-    pub missing: usize,
+    /// Such parts that were left out: hidden in the bone, or with nothing opposite.
+    pub left_out: usize,
 }
 
 /// The vertices of `mesh` whose mirror images lie where the `selected` ones do.
 ///
-/// Pieces of the selection that face other ways are looked at on their own, so that each is cut on its own.
+/// Pieces of the selection that face other ways are looked at on their own, so that each is cut on its own. Unless
+/// hidden ones count (`with_hidden`), those beside the largest must be seen from where they face: the inner side of
+/// a vault, which a lasso that sees through the bone picks up, belongs to the piece before it.
 /// The triangles of `mesh` must face outward ([`bonemesh_mesh::face_outward`]).
 ///
 /// # Errors
@@ -46,6 +51,7 @@ pub fn counterparts(
     mesh: &TriangleMesh,
     selected: &[u32],
     plane: &Plane,
+    with_hidden: bool,
     task: &Task,
 ) -> Result<Counterparts, RoiError> {
     let selection = &Selection::new(selected, mesh.vertices_mm().len())?;
@@ -58,13 +64,22 @@ pub fn counterparts(
     }
     let mut found = Counterparts {
         sides: Vec::new(),
-        missing: 0,
+        left_out: 0,
     };
-    for side in sides(mesh, patch) {
+    let mut sides = sides(mesh, patch);
+    if !with_hidden && sides.len() > 1 {
+        let tree = TriangleTree::new(mesh, task)?;
+        let largest = sides.remove(0);
+        let count = sides.len();
+        sides.retain(|side| side.is_seen(&tree));
+        found.left_out = count - sides.len();
+        sides.insert(0, largest);
+    }
+    for side in sides {
         let mut opposite = side.opposite(mesh, plane, task)?;
         opposite.sort_unstable();
         if opposite.len() < 3 {
-            found.missing += 1;
+            found.left_out += 1;
         } else {
             found.sides.push(opposite);
         }
@@ -116,6 +131,21 @@ fn sides(mesh: &TriangleMesh, patch: Vec<[u32; 3]>) -> Vec<Side> {
 }
 
 impl Side {
+    /// Whether nothing lies before most of it.
+    fn is_seen(&self, tree: &TriangleTree<'_>) -> bool {
+        let outward = unit(self.facing);
+        let every = self.triangles.len().div_ceil(SAMPLES);
+        let samples = self.triangles.iter().step_by(every);
+        let is_covered = |triangle: &&[u32; 3]| {
+            let [a, b, c] = tree.mesh().corners_mm(**triangle);
+            let middle = [0, 1, 2].map(|axis| (a[axis] + b[axis] + c[axis]) / 3.0);
+            let before = plus_scaled(middle, BEFORE_MM, outward);
+            tree.first_hit(before, outward, f64::INFINITY).is_some()
+        };
+        let covered = samples.clone().filter(is_covered).count();
+        2 * covered <= samples.count()
+    }
+
     /// The vertices whose mirror images lie in its area.
     fn opposite(
         &self,

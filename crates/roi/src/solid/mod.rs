@@ -62,10 +62,10 @@ const EDGES_IN_WIDTH: f64 = 6.0;
 const EDGES_BESIDE: f64 = 6.0;
 /// Steps of a plate in its clearance, so that no ridge of the bone is passed over, but no less than a fine scan's pixel
 /// (mm); and how often they are halved where it comes nearer than a part of its clearance all the same.
-const IN_CLEARANCE: f64 = 1.5;
-const LEAST_PLATE_STEP_MM: f64 = 0.15;
-const HALVINGS: usize = 2;
-const NEARER: f64 = 0.8;
+const IN_CLEARANCE: f64 = 1.0;
+const LEAST_PLATE_STEP_MM: f64 = 0.3;
+const HALVINGS: usize = 1;
+const NEARER: f64 = 0.5;
 /// Least thickness, and least distance from the outline to the middle of a patch, in steps.
 const LEAST_STEPS: f64 = 1.5;
 
@@ -292,7 +292,7 @@ fn cut_out(
             solid.gap_mm = least_gap_mm(&solid.mesh, mesh, clearance_mm, task)?;
             let is_kept = solid.gap_mm.is_none_or(|gap| gap >= NEARER * clearance_mm);
             step_mm /= 2.0;
-            if is_kept || halving == HALVINGS || step_mm < LEAST_PLATE_STEP_MM {
+            if is_kept || halving == HALVINGS {
                 break;
             }
             solid.mesh = cut(step_mm, Sheet::of(&fine.near, &outline, thickness_mm)?)?;

@@ -4,7 +4,7 @@ use bonemesh_mesh::{Plane, TriangleMesh, TriangleTree};
 use bonemesh_roi::{RoiError, counterparts, symmetry_plane};
 use bonemesh_task::Task;
 
-use crate::bodies::{body, length, selected, solid, volume_mm3};
+use crate::bodies::{body, length, selected, shell, solid, volume_mm3};
 
 /// A head of three different radii with a nose, two ears and, on one side alone, a lump.
 fn head() -> TriangleMesh {
@@ -91,7 +91,7 @@ fn the_healthy_side_of_a_selection_around_a_defect_has_what_the_defect_lacks() {
         p[0] > 0.0 && p[1].hypot(p[2]) < 8.0 && skull(p, 15.8) < 0.0
     });
     let plane = Plane::new([1.0, 0.0, 0.0], 0.0).unwrap();
-    let found = counterparts(&head, &around, &plane, &Task::default()).unwrap();
+    let found = counterparts(&head, &around, &plane, false, &Task::default()).unwrap();
     let [other] = &found.sides[..] else {
         panic!("the selection faces one way");
     };
@@ -111,7 +111,7 @@ fn the_healthy_side_of_a_selection_around_a_defect_has_what_the_defect_lacks() {
     let tree = TriangleTree::new(&back, &Task::default()).unwrap();
     assert!(tree.nearest([16.0, 0.0, 0.0], 0.3).is_some());
     let far = Plane::new([1.0, 0.0, 0.0], 300.0).unwrap();
-    let none = counterparts(&head, &around, &far, &Task::default());
+    let none = counterparts(&head, &around, &far, false, &Task::default());
     assert!(matches!(none, Err(RoiError::NoCounterpart)));
 }
 
@@ -121,11 +121,12 @@ fn pieces_that_face_other_ways_have_counterparts_of_their_own() {
     let left: fn([f64; 3]) -> bool = |[x, y, z]| x > 0.0 && (y - 3.0).hypot(z) < 3.0;
     let top: fn([f64; 3]) -> bool = |[x, y, z]| z > 0.0 && (x - 4.0).hypot(y) < 2.0;
     let plane = Plane::new([1.0, 0.0, 0.0], 0.0).unwrap();
-    let opposite =
-        |selection: &[u32]| counterparts(&ball, selection, &plane, &Task::default()).unwrap();
+    let opposite = |selection: &[u32]| {
+        counterparts(&ball, selection, &plane, false, &Task::default()).unwrap()
+    };
     let apart = [left, top].map(|is_in| opposite(&selected(&ball, is_in)).sides.remove(0));
     let both = opposite(&selected(&ball, |p| left(p) || top(p)));
-    assert_eq!((&both.sides[..], both.missing), (&apart[..], 0));
+    assert_eq!((&both.sides[..], both.left_out), (&apart[..], 0));
     let mirrored = |[x, y, z]: [f64; 3]| [-x, y, z];
     // Gaps of the area are closed up to half a cell beyond the selection.
     for vertex in both.sides.concat() {
@@ -136,4 +137,16 @@ fn pieces_that_face_other_ways_have_counterparts_of_their_own() {
             "{place:?}"
         );
     }
+}
+
+#[test]
+fn the_inner_side_behind_a_selection_has_no_counterpart_of_its_own_unless_asked_for() {
+    let shell = shell();
+    let through = selected(&shell, |[x, y, z]| x > 0.0 && y.hypot(z) < 5.0);
+    let plane = Plane::new([1.0, 0.0, 0.0], 0.0).unwrap();
+    let sides = |with_hidden: bool| {
+        counterparts(&shell, &through, &plane, with_hidden, &Task::default()).unwrap()
+    };
+    assert_eq!((sides(false).sides.len(), sides(false).left_out), (1, 1));
+    assert_eq!((sides(true).sides.len(), sides(true).left_out), (2, 0));
 }
