@@ -60,12 +60,8 @@ const EDGE_STEPS: f64 = 3.0;
 /// At least so many of them in the patch's width, and so many beside it.
 const EDGES_IN_WIDTH: f64 = 6.0;
 const EDGES_BESIDE: f64 = 6.0;
-/// Steps of a plate in its clearance, so that no ridge of the bone is passed over, but no less than a fine scan's pixel
-/// (mm); and how often they are halved where it comes nearer than a part of its clearance all the same.
-const IN_CLEARANCE: f64 = 1.0;
-const LEAST_PLATE_STEP_MM: f64 = 0.3;
-const HALVINGS: usize = 1;
-const NEARER: f64 = 0.5;
+/// Largest step (mm) of a plate, or its clearance if that is more: else it would pass over ridges of the bone.
+const PLATE_STEP_MM: f64 = 0.5;
 /// Least thickness, and least distance from the outline to the middle of a patch, in steps.
 const LEAST_STEPS: f64 = 1.5;
 
@@ -258,7 +254,7 @@ fn cut_out(
     let space = patch.space().ok_or(RoiError::NothingCut)?;
     let (area_mm2, is_patch) = (patch.area_mm2(), patch.of_mesh());
     let thickness_mm = request.thickness.mm();
-    let mut step_mm = fitting_step_mm(mesh, &space, area_mm2, request)?;
+    let step_mm = fitting_step_mm(mesh, &space, area_mm2, request)?;
     let mut fine = patch.clone();
     let longest_mm = (EDGE_STEPS * step_mm).min(area_mm2.sqrt() / EDGES_IN_WIDTH);
     fine.refine(&space.wider(EDGES_BESIDE * longest_mm), longest_mm, task)?;
@@ -268,37 +264,26 @@ fn cut_out(
     if width_mm < LEAST_STEPS * step_mm {
         return Err(RoiError::TooSmall { area_mm2 });
     }
-    let cut = |step_mm: f64, sheet: Sheet| {
-        let cut = Cut {
-            request,
-            step_mm,
-            inward,
-            sheet,
-        };
-        cut.sound(mesh, &is_patch, task)
+    let cut = Cut {
+        request,
+        step_mm,
+        inward,
+        sheet,
     };
-    let mut solid = Solid {
-        mesh: cut(step_mm, sheet)?,
+    let cut = cut.sound(mesh, &is_patch, task)?;
+    let gap_mm = match request.direction {
+        Direction::Outward => least_gap_mm(&cut, mesh, request.clearance.mm(), task)?,
+        _ => None,
+    };
+    Ok(Solid {
+        mesh: cut,
         selected: 0,
         patch_mm2: area_mm2,
         inward,
         dropped: 0,
         closed: 0,
-        gap_mm: None,
-    };
-    if request.direction == Direction::Outward {
-        let clearance_mm = request.clearance.mm();
-        for halving in 0.. {
-            solid.gap_mm = least_gap_mm(&solid.mesh, mesh, clearance_mm, task)?;
-            let is_kept = solid.gap_mm.is_none_or(|gap| gap >= NEARER * clearance_mm);
-            step_mm /= 2.0;
-            if is_kept || halving == HALVINGS {
-                break;
-            }
-            solid.mesh = cut(step_mm, Sheet::of(&fine.near, &outline, thickness_mm)?)?;
-        }
-    }
-    Ok(solid)
+        gap_mm,
+    })
 }
 
 /// How far apart the nodes are for a patch of that box and area, where so thin a cut can be told at all.
@@ -317,8 +302,7 @@ fn fitting_step_mm(
     };
     let mut step_mm = step_mm(area_mm2, thickness_mm);
     if request.direction == Direction::Outward {
-        let of_clearance = request.clearance.mm() / IN_CLEARANCE;
-        step_mm = step_mm.min(of_clearance.max(LEAST_PLATE_STEP_MM));
+        step_mm = step_mm.min(request.clearance.mm().max(PLATE_STEP_MM));
     }
     let step_mm = affordable_mm(&cut_space, step_mm);
     let least_mm = LEAST_STEPS * step_mm;
