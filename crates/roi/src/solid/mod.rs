@@ -124,8 +124,9 @@ pub struct Solid {
 /// The front are the triangles of the mesh, unchanged but along the outline, which runs smoothly between
 /// selected vertices and others; the sides stand upright on the surface, or lie along a straight direction;
 /// the back is the bone's far side where that is within reach, else as deep as the thickness below the
-/// nearest place of the patch, or straight behind it. A plate keeps its clearance from all bone near, and its
-/// outer side follows the patch smoothed. The result is the same for any number of threads and any order of
+/// nearest place of the patch, or straight behind it. A plate keeps its clearance from all bone near, as far
+/// as steps of half a millimetre or of the clearance tell ([`Solid::gap_mm`] says where it does not), and its outer
+/// side follows the patch smoothed. The result is the same for any number of threads and any order of
 /// the selection.
 ///
 /// # Errors
