@@ -1,17 +1,22 @@
-//! What is done to a finished mesh: winding, holes, islands, cavities, smoothing, fewer triangles.
+//! What is done to a finished mesh: triangles that are no surface, winding, holes, islands, cavities, smoothing, fewer triangles.
 
 use std::time::Instant;
 
 use bonemesh_mesh::{
     Decimation, HoleLeft, HoleLimits, HoleReason, HolesFilled, Islands, Kept, TriangleMesh,
-    decimate, face_outward, fill_cavities, fill_holes, keep_islands, smooth,
+    TriangleTree, check_topology, clean, decimate, face_outward, fill_cavities, fill_holes,
+    keep_islands, smooth,
 };
-use bonemesh_task::Task;
+use bonemesh_task::{Cancelled, Task};
+use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::Error;
 use crate::render::Rendered;
 use crate::report::check;
+
+/// Vertices done between two looks at the cancel switch.
+const STRIDE: usize = 1 << 12;
 
 /// Which cavities are filled.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +39,8 @@ pub enum Holes {
 /// What is done to a finished mesh, in the order of the fields; by default nothing.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct AfterCare {
+    /// Whether triangles without area and those given twice are taken out. Meshes that are rendered have none.
+    pub clean: bool,
     /// Whether triangles that face another way than their neighbours, and parts that are inside out, are
     /// turned over. Meshes that are rendered have none.
     pub face_outward: bool,
@@ -53,6 +60,10 @@ pub struct AfterCare {
 /// What [`care_for`] did.
 #[derive(Clone, Debug, PartialEq, Default, Serialize)]
 pub struct AfterCareReport {
+    /// Triangles without area that were taken out.
+    pub removed_degenerate: usize,
+    /// Triangles taken out because others have the same corners.
+    pub removed_doubled: usize,
     /// Triangles turned over; `None` if none were to be.
     pub turned_triangles: Option<usize>,
     /// Holes filled; `None` if none were to be.
@@ -80,6 +91,11 @@ pub struct AfterCareReport {
     /// Vertices that decimation left alone with their triangles, because the surface would have
     /// passed through itself or left the error bound.
     pub held_vertices: Option<usize>,
+    /// The furthest that a vertex which decimation was given is from the surface it left; `None` without
+    /// decimation.
+    pub largest_distance_mm: Option<f64>,
+    /// By how much smoothing and decimation changed the volume; `None` without them or of an open mesh.
+    pub volume_change_percent: Option<f64>,
     /// Seconds that it took.
     pub seconds: f64,
 }
@@ -123,6 +139,19 @@ impl AfterCare {
     pub fn is_nothing(&self) -> bool {
         *self == Self::default()
     }
+
+    /// Whether the surface is moved.
+    fn reshapes(&self) -> bool {
+        self.smooth_mm.is_some() || self.decimation != Decimation::default()
+    }
+
+    /// Refuses what cannot be done to any mesh, before long work begins.
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] for a number of triangles or a length that is none.
+    pub fn check(&self) -> Result<(), Error> {
+        Ok(self.decimation.check()?)
+    }
 }
 
 /// Does to `mesh` what `care` asks for.
@@ -136,8 +165,15 @@ pub fn care_for(
     task: &Task,
 ) -> Result<(TriangleMesh, AfterCareReport), Error> {
     let clock = Instant::now();
+    care.check()?;
     let mut report = AfterCareReport::default();
     let mut mesh = mesh;
+    if care.clean {
+        let cleaned = clean(&mesh, task)?;
+        report.removed_degenerate = cleaned.degenerate;
+        report.removed_doubled = cleaned.doubled;
+        mesh = cleaned.mesh;
+    }
     if care.face_outward {
         let faced = face_outward(&mesh, task)?;
         report.turned_triangles = Some(faced.turned);
@@ -175,6 +211,7 @@ pub fn care_for(
         };
         mesh = report.without(fill_cavities(&mesh, most, task)?);
     }
+    let before = care.reshapes().then(|| mesh.clone());
     if let Some(tolerance_mm) = care.smooth_mm {
         let smoothed = smooth(&mesh, tolerance_mm, task)?;
         report.largest_move_mm = Some(smoothed.largest_move_mm);
@@ -187,7 +224,11 @@ pub fn care_for(
         report.removed_triangles = Some(mesh.triangles().len() - left);
         report.missed_triangles = care.decimation.triangles.filter(|wanted| left > *wanted);
         report.held_vertices = Some(decimated.held_vertices);
+        report.largest_distance_mm = largest_distance_mm(&mesh, &decimated.mesh, task)?;
         mesh = decimated.mesh;
+    }
+    if let Some(before) = before {
+        report.volume_change_percent = volume_change_percent(&before, &mesh, task)?;
     }
     report.seconds = clock.elapsed().as_secs_f64();
     Ok((mesh, report))
@@ -220,6 +261,40 @@ impl AfterCareReport {
         }
         kept.mesh
     }
+}
+
+/// The furthest that a vertex of `given` is from the surface `left`; `None` if there is no surface.
+fn largest_distance_mm(
+    given: &TriangleMesh,
+    left: &TriangleMesh,
+    task: &Task,
+) -> Result<Option<f64>, Error> {
+    let tree = TriangleTree::new(left, task)?;
+    task.begin("distances", given.vertices_mm().len());
+    let chunks = given.vertices_mm().par_chunks(STRIDE).map(|places| {
+        task.advance(places.len())?;
+        let distances = places
+            .iter()
+            .filter_map(|place| tree.nearest(*place, f64::INFINITY));
+        Ok(distances
+            .map(|nearest| nearest.squared_mm2.sqrt())
+            .reduce(f64::max))
+    });
+    let largest: Vec<Option<f64>> = chunks.collect::<Result<_, Cancelled>>()?;
+    Ok(largest.into_iter().flatten().reduce(f64::max))
+}
+
+/// By how much the volume of a closed mesh changed.
+fn volume_change_percent(
+    before: &TriangleMesh,
+    after: &TriangleMesh,
+    task: &Task,
+) -> Result<Option<f64>, Error> {
+    let before = check_topology(before, task)?;
+    let after = check_topology(after, task)?;
+    let is_known = before.watertight && after.watertight && before.volume_mm3 != 0.0;
+    let ratio = after.volume_mm3 / before.volume_mm3;
+    Ok(is_known.then_some(100.0 * (ratio - 1.0)))
 }
 
 /// The rendered mesh after `care`, its report brought up to date.

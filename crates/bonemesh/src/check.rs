@@ -215,7 +215,7 @@ fn reasons(topology: &Topology, found: &Intersections, nesting: Nesting) -> Vec<
         topology.non_manifold_edges,
         "edge with more than two triangles: parts touch along it",
         "edges with more than two triangles: parts touch along them",
-        "join or part the surface there (in Blender: the Remesh modifier)",
+        "take out triangles that are there twice (bonemesh repair), or join or part the surface there (in Blender: the Remesh modifier)",
     );
     add(
         topology.non_manifold_vertices,
@@ -259,7 +259,7 @@ fn reasons(topology: &Topology, found: &Intersections, nesting: Nesting) -> Vec<
         topology.degenerate_triangles,
         "triangle without area",
         "triangles without area",
-        "remove them (in Blender: Mesh > Clean Up > Degenerate Dissolve)",
+        "take them out (bonemesh repair; in Blender: Mesh > Clean Up > Degenerate Dissolve)",
     );
     reasons
 }

@@ -18,6 +18,7 @@ const OF_VOXELS: [Method; 2] = [Method::Isosurface, Method::Labelled];
 /// # Errors
 /// [`Error::NotForMethod`] with the first such choice and the methods that have it.
 pub(crate) fn refuse_unused(settings: &Settings) -> Result<(), Error> {
+    settings.after_care.check()?;
     let usual = Settings::default();
     let has_alpha = settings.alpha_mm.is_some() || settings.alpha_rule != AlphaRule::default();
     let choices: [(bool, &str, &[Method]); 8] = [

@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 use std::time::Instant;
 
 use bonemesh_mesh::{
-    HoleLimits, TriangleMesh, TriangleTree, face_outward, fill_holes, find_intersections,
+    HoleLimits, TriangleMesh, TriangleTree, clean, face_outward, fill_holes, find_intersections,
 };
 use bonemesh_roi::{
     ClearanceMm, Direction, Method, RoiError, Solid, SolidRequest, ThicknessMm, counterparts,
@@ -298,13 +298,15 @@ fn with_mesh_mended(
     Ok((cut(&whole, &selected)?, mended))
 }
 
-/// Turned to face outward, and without holes.
+/// Without triangles that are no surface, turned to face outward, and without holes.
 fn mended(mesh: &TriangleMesh, task: &Task) -> Result<(TriangleMesh, Mended), Error> {
-    let faced = face_outward(mesh, task)?;
+    let cleaned = clean(mesh, task)?;
+    let faced = face_outward(&cleaned.mesh, task)?;
     let filled = fill_holes(&faced.mesh, HoleLimits::default(), task)?;
     // Of an open part it is not known which way is out.
     let closed = face_outward(&filled.mesh, task)?;
     let mended = Mended {
+        removed_triangles: cleaned.degenerate + cleaned.doubled,
         turned_triangles: faced.turned.max(closed.turned),
         filled_holes: filled.filled,
     };

@@ -121,6 +121,8 @@ pub struct SolidReport {
     pub dropped_pieces: usize,
     /// Gaps in the selection that were closed.
     pub closed_gaps: usize,
+    /// Triangles of the mesh without area, or given twice, that were taken out first.
+    pub removed_triangles: usize,
     /// Triangles of the mesh that were turned over first, to face as their neighbours do.
     pub turned_triangles: usize,
     /// Holes of the mesh that were filled first.
@@ -136,6 +138,7 @@ pub struct SolidReport {
 /// What was done to the mesh before a solid was cut.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Mended {
+    pub(crate) removed_triangles: usize,
     pub(crate) turned_triangles: usize,
     pub(crate) filled_holes: usize,
 }
@@ -154,6 +157,7 @@ impl SolidReport {
             patch_mm2: solid.patch_mm2,
             dropped_pieces: solid.dropped,
             closed_gaps: solid.closed,
+            removed_triangles: mended.removed_triangles,
             turned_triangles: mended.turned_triangles,
             filled_holes: mended.filled_holes,
             gap_mm: solid.gap_mm,

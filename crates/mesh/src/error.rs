@@ -93,6 +93,18 @@ pub enum MeshError {
         /// The file.
         path: PathBuf,
     },
+    /// Fewer triangles asked for than enclose a volume.
+    #[error("{triangles} triangles enclose nothing; ask for at least 4")]
+    TooFewTriangles {
+        /// How many were asked for.
+        triangles: usize,
+    },
+    /// The file is no file on a disk.
+    #[error("{} is a pipe or device; name a file on a disk", path.display())]
+    NoRegularFile {
+        /// The file.
+        path: PathBuf,
+    },
     /// An empty mesh was to be written.
     #[error("the mesh has no triangles, so {} was not written; check the step that made it", path.display())]
     NothingToWrite {

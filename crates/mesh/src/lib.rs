@@ -6,7 +6,8 @@
 //! cuts along a plane.
 //! [`keep_islands`], [`fill_cavities`], [`smooth`] and [`decimate`] give a new mesh: what was a closed
 //! 2-manifold that passes through itself nowhere still is one, with the coordinates that a file holds.
-//! [`fill_holes`] closes what is open, [`face_outward`] turns over what faces the wrong way.
+//! [`clean`] takes out triangles without area or given twice, [`fill_holes`] closes what is open,
+//! [`face_outward`] turns over what faces the wrong way.
 //!
 //! Limits: files hold 32-bit floats, so a mesh comes back rounded to them (about 0.00002 mm at
 //! 200 mm from the origin). Only STL, PLY, OBJ and 3MF are read and written.
@@ -48,6 +49,7 @@
 //! *A signal processing approach to fair surface design* (1995). Holes: Barequet and Sharir, *Filling gaps
 //! in the boundary of a polyhedron* (1995); Liepa, *Filling holes in meshes* (2003).
 
+mod clean;
 mod decimate;
 mod distance;
 mod error;
@@ -67,6 +69,7 @@ mod topology;
 mod tree;
 mod vector;
 
+pub use clean::{Cleaned, clean};
 pub use decimate::{Decimated, Decimation, decimate};
 pub use error::MeshError;
 pub use holes::{HoleLeft, HoleLimits, HoleReason, HolesFilled, fill_holes};

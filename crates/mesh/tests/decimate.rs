@@ -126,12 +126,12 @@ fn a_box_of_many_triangles_becomes_one_of_twelve_with_the_same_corners() {
 #[test]
 fn no_number_goes_below_the_simplest_body_of_the_kind() {
     assert_eq!(
-        decimated(&cubes(4, |_| true), to_triangles(0))
+        decimated(&cubes(4, |_| true), to_triangles(4))
             .triangles()
             .len(),
         4
     );
-    assert!(decimated(&torus(12, 8), to_triangles(0)).triangles().len() >= 14);
+    assert!(decimated(&torus(12, 8), to_triangles(4)).triangles().len() >= 14);
 }
 
 #[test]
@@ -216,7 +216,7 @@ fn tiny_and_empty_meshes_pass_and_bad_numbers_are_refused() {
     let task = Task::default();
     let point = mesh(vec![[1.0; 3]; 3], vec![[0, 1, 2], [0, 0, 1]]);
     for given in [TriangleMesh::default(), mesh(vec![[1.0; 3]], vec![]), point] {
-        for goal in [to_triangles(1), within_error(1.0)] {
+        for goal in [to_triangles(4), within_error(1.0)] {
             assert!(decimate(&given, goal, &task).is_ok());
         }
     }
@@ -224,6 +224,41 @@ fn tiny_and_empty_meshes_pass_and_bad_numbers_are_refused() {
         let given = box_mesh([0.0; 3], [1.0; 3]);
         let refused = decimate(&given, within_error(bad), &task).unwrap_err();
         assert!(matches!(refused, MeshError::Length { .. }));
+    }
+    for few in 0..4 {
+        let refused = decimate(&box_mesh([0.0; 3], [1.0; 3]), to_triangles(few), &task);
+        assert!(
+            matches!(refused, Err(MeshError::TooFewTriangles { triangles }) if triangles == few)
+        );
+    }
+}
+
+/// A ring of quads with a lid at either end, every corner shaken.
+fn crumb(around: u32, shaken: &[f64]) -> TriangleMesh {
+    let angle = |i: u32| std::f64::consts::TAU * f64::from(i) / f64::from(around);
+    let ring = |z: f64| (0..around).map(move |i| [angle(i).cos(), angle(i).sin(), z]);
+    let mut vertices: Vec<[f64; 3]> = ring(-0.5).chain(ring(0.5)).collect();
+    vertices.extend([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]]);
+    for (value, shake) in vertices.as_flattened_mut().iter_mut().zip(shaken) {
+        *value += shake;
+    }
+    let (bottom, top) = (2 * around, 2 * around + 1);
+    let triangles = (0..around).flat_map(|a| {
+        let b = (a + 1) % around;
+        let (c, d) = (a + around, b + around);
+        [[a, b, d], [a, d, c], [b, a, bottom], [c, d, top]]
+    });
+    mesh(vertices, triangles.collect())
+}
+
+proptest! {
+    #[test]
+    fn no_crumb_is_turned_inside_out(around in 3_u32..7, shaken in prop::collection::vec(-0.6..0.6, 42)) {
+        let given = crumb(around, &shaken);
+        prop_assume!(topology(&given).volume_mm3 > 0.0);
+        for count in [4, 8, 12] {
+            prop_assert!(topology(&decimated(&given, to_triangles(count))).volume_mm3 > 0.0);
+        }
     }
 }
 

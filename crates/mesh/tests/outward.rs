@@ -70,6 +70,47 @@ fn a_cavity_keeps_facing_inward_when_only_the_outside_was_wrong() {
 }
 
 #[test]
+fn bodies_that_touch_are_turned_one_by_one() {
+    let small = box_mesh([0.0; 3], [2.0; 3]);
+    for touching in [
+        // Along an edge, in a corner, in the corner where all coordinates are highest.
+        box_mesh([2.0, 2.0, 0.0], [9.0, 9.0, 2.0]),
+        box_mesh([2.0, 2.0, 2.0], [9.0; 3]),
+        box_mesh([-9.0, -9.0, -9.0], [0.0; 3]),
+    ] {
+        let sound = together(&small, &touching);
+        for wrong in [0..12, 12..24, 0..24] {
+            let (mended, turned) = faced(&with_turned(&sound, |t| wrong.contains(&t)));
+            assert_eq!(turned, wrong.len());
+            let topology = check_topology(&mended, &Task::default()).expect("nobody cancels");
+            let volume = check_topology(&sound, &Task::default()).expect("nobody cancels");
+            assert!((topology.volume_mm3 - volume.volume_mm3).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn a_cavity_that_touches_its_body_faces_inward() {
+    let mut sound = box_mesh([0.0; 3], [9.0; 3]);
+    let cavity = mesh(
+        vec![[9.0; 3], [5.0, 6.0, 6.0], [6.0, 5.0, 6.0], [6.0, 6.0, 5.0]],
+        vec![[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]],
+    );
+    let volume = |of: &TriangleMesh| {
+        check_topology(of, &Task::default())
+            .expect("nobody cancels")
+            .volume_mm3
+    };
+    let cavity = with_turned(&cavity, |_| volume(&cavity) > 0.0);
+    sound = together(&sound, &cavity);
+    for wrong in [0..12, 12..16, 0..16] {
+        let (mended, turned) = faced(&with_turned(&sound, |t| wrong.contains(&t)));
+        assert_eq!(turned, wrong.len());
+        assert!((volume(&mended) - volume(&sound)).abs() < 1e-9);
+    }
+}
+
+#[test]
 fn corners_need_not_be_shared() {
     let sound = with_turned(&box_mesh([0.0; 3], [1.0; 3]), |t| t == 3);
     let corners = sound.triangles().iter().flat_map(|t| sound.corners_mm(*t));

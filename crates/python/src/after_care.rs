@@ -103,6 +103,23 @@ pub(crate) fn fill_holes(
     cared_for(py, mesh, care, progress, cancel)
 }
 
+/// Take out triangles without area, and those that lie on others with the same corners, without opening the
+/// surface. `report["removed_degenerate"]` and `report["removed_doubled"]` count them.
+#[pyfunction]
+#[pyo3(signature = (mesh, *, progress=None, cancel=None))]
+pub(crate) fn clean(
+    py: Python<'_>,
+    mesh: &Mesh,
+    progress: Option<Py<PyAny>>,
+    cancel: Option<&Cancel>,
+) -> PyResult<Mesh> {
+    let care = AfterCare {
+        clean: true,
+        ..AfterCare::default()
+    };
+    cared_for(py, mesh, care, progress, cancel)
+}
+
 /// Turn over triangles that face another way than their neighbours, and closed parts that are inside out.
 #[pyfunction]
 #[pyo3(signature = (mesh, *, progress=None, cancel=None))]

@@ -46,7 +46,7 @@ mod _native {
 
     #[pymodule_export]
     use crate::after_care::{
-        decimate, face_outward, fill_cavities, fill_holes, keep_islands, smooth,
+        clean, decimate, face_outward, fill_cavities, fill_holes, keep_islands, smooth,
     };
     #[pymodule_export]
     use crate::cancel::Cancel;

@@ -131,6 +131,7 @@ pub(crate) fn render(
         series: series.map(|s| s.0),
         one_series,
         after_care: AfterCare {
+            clean: false,
             face_outward: false,
             holes: holes.map(|h| h.0),
             islands: islands.map(|i| i.0),

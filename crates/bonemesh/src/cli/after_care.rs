@@ -40,6 +40,7 @@ pub(super) struct AfterCareArguments {
 impl AfterCareArguments {
     pub(super) fn settings(&self) -> AfterCare {
         AfterCare {
+            clean: false,
             face_outward: false,
             holes: self.fill_holes,
             islands: self.islands.clone(),
@@ -69,11 +70,12 @@ pub(super) struct Repair {
     threads: Option<NonZeroUsize>,
 }
 
-/// Turns over what faces the wrong way in a file's mesh, and does to it what the arguments ask for.
+/// Takes out what is no surface, turns over what faces the wrong way, and does what the arguments ask for.
 pub(super) fn run(arguments: &Repair, task: &Task) -> Result<Answer, Error> {
     arguments.file.check(&arguments.output)?;
     let mesh = read_mesh(&arguments.mesh, task)?;
     let care = AfterCare {
+        clean: true,
         face_outward: true,
         ..arguments.care.settings()
     };
@@ -83,8 +85,10 @@ pub(super) fn run(arguments: &Repair, task: &Task) -> Result<Answer, Error> {
         .write(&arguments.output, &mesh, &report, task)?;
     let (vertices, triangles) = (mesh.vertices_mm().len(), mesh.triangles().len());
     let text = format!(
-        "{}\n  {triangles} triangles, {vertices} vertices\n{}  {:.2} s\n",
+        "{}\n  {}, {}\n{}  {:.2} s\n",
         arguments.output.display(),
+        text::counted(triangles, "triangle", "triangles"),
+        text::counted(vertices, "vertex", "vertices"),
         text::after_care(&report),
         report.seconds
     );

@@ -53,7 +53,8 @@ pub(super) enum Command {
     Check(Check),
     /// Compare a mesh with a reference: distances, edge midpoints, residual volume.
     Compare(CompareArguments),
-    /// Care for a mesh: fill holes, take islands away, fill cavities, smooth, take triangles away.
+    /// Care for a mesh: take out triangles without area or given twice, turn over those that face the wrong way;
+    /// as asked, fill holes, take islands away, fill cavities, smooth, take triangles away.
     Repair(Repair),
     /// Write a phantom as a DICOM CT series, with its truth beside it.
     Phantom(PhantomArguments),

@@ -145,6 +145,13 @@ const HOLES_SHOWN: usize = 5;
 /// What was done to a finished mesh, a line each.
 pub(super) fn after_care(report: &AfterCareReport) -> String {
     let mut text = String::new();
+    let taken_out = [
+        (report.removed_degenerate, "without area taken out"),
+        (report.removed_doubled, "given twice taken out"),
+    ];
+    for (count, what) in taken_out.into_iter().filter(|(count, _)| *count > 0) {
+        let _ = writeln!(text, "  {} {what}", counted(count, "triangle", "triangles"));
+    }
     if let Some(turned) = report.turned_triangles.filter(|turned| *turned > 0) {
         // Writing to a String cannot fail.
         let turned = counted(turned, "triangle", "triangles");
@@ -190,7 +197,20 @@ pub(super) fn after_care(report: &AfterCareReport) -> String {
             0 => String::new(),
             _ => format!(", {held} vertices left as they were"),
         };
-        let _ = writeln!(text, "  {count} triangles taken away{held}");
+        let _ = writeln!(
+            text,
+            "  {} taken away{held}",
+            counted(count, "triangle", "triangles")
+        );
+    }
+    if let Some(mm) = report.largest_distance_mm {
+        let _ = writeln!(
+            text,
+            "  the reduced surface passes the former vertices at {mm:.3} mm at most"
+        );
+    }
+    if let Some(percent) = report.volume_change_percent {
+        let _ = writeln!(text, "  volume changed by {percent:+.3} %");
     }
     if let Some(wanted) = report.missed_triangles {
         let _ = writeln!(
@@ -211,7 +231,7 @@ fn volume(mm3: f64) -> String {
 }
 
 /// `count` with its noun.
-fn counted(count: usize, one: &str, many: &str) -> String {
+pub(super) fn counted(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }
 
@@ -269,12 +289,17 @@ fn solid_notes(solid: &SolidReport) -> String {
         (
             solid.dropped_pieces,
             ["piece", "pieces"],
-            "of the selection left out: crumbs, or hidden behind others",
+            "of the selection left out: crumbs, or hidden behind others (--hidden takes these too)",
         ),
         (
             solid.closed_gaps,
             ["gap", "gaps"],
             "in the selection closed",
+        ),
+        (
+            solid.removed_triangles,
+            ["triangle", "triangles"],
+            "without area, or given twice, of the mesh taken out first",
         ),
         (
             solid.turned_triangles,
@@ -377,7 +402,7 @@ pub(super) fn checked(check: &PrintCheck, file: &Path) -> String {
             (name, extent)
         }));
     }
-    rows.push(("printable", yes(check.printable).to_owned()));
+    rows.push(("printable", verdict_on_print(check)));
     let mut text = format!("{}\n", file.display());
     for (name, value) in rows {
         // Writing to a String cannot fail.
@@ -387,6 +412,21 @@ pub(super) fn checked(check: &PrintCheck, file: &Path) -> String {
         let _ = writeln!(text, "    {reason}");
     }
     text
+}
+
+/// Walls (mm) that a usual nozzle of 0.4 mm cannot lay down.
+const THIN_MM: f64 = 0.4;
+
+/// The verdict, and whether walls may be too thin for it.
+fn verdict_on_print(check: &PrintCheck) -> String {
+    let is_thin = check.thinnest_wall_mm.is_some_and(|mm| mm < THIN_MM);
+    match (check.printable, is_thin) {
+        (true, true) => format!(
+            "yes, but walls below {THIN_MM} mm are thinner than most printers print (see where: --walls)"
+        ),
+        (true, false) => "yes".to_owned(),
+        (false, _) => "no".to_owned(),
+    }
 }
 
 /// How many there are and where the first is.

@@ -46,6 +46,25 @@ pub struct Decimation {
     pub error_mm: Option<f64>,
 }
 
+/// Fewer triangles than this enclose nothing.
+const LEAST_TRIANGLES: usize = 4;
+
+impl Decimation {
+    /// Refuses what no mesh can be brought to.
+    ///
+    /// # Errors
+    /// [`MeshError::TooFewTriangles`], [`MeshError::Length`]
+    pub fn check(&self) -> Result<(), MeshError> {
+        if let Some(triangles) = self.triangles.filter(|wanted| *wanted < LEAST_TRIANGLES) {
+            return Err(MeshError::TooFewTriangles { triangles });
+        }
+        if let Some(error_mm) = self.error_mm {
+            MeshError::length("error bound", error_mm)?;
+        }
+        Ok(())
+    }
+}
+
 /// What [`decimate`] gives.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Decimated {
@@ -71,7 +90,7 @@ pub struct Decimated {
 /// The result is the same for any number of threads.
 ///
 /// # Errors
-/// [`MeshError::Length`] for an error bound that is no length, [`MeshError::NotFinite`] for a
+/// [`MeshError::TooFewTriangles`] for less than 4, [`MeshError::Length`] for an error bound that is no length, [`MeshError::NotFinite`] for a
 /// coordinate too large for a 32-bit float, [`MeshError::TooManyToDecimate`],
 /// [`MeshError::Cancelled`].
 pub fn decimate(
@@ -79,9 +98,8 @@ pub fn decimate(
     goal: Decimation,
     task: &Task,
 ) -> Result<Decimated, MeshError> {
-    let error_mm = (goal.error_mm)
-        .map(|error_mm| MeshError::length("error bound", error_mm))
-        .transpose()?;
+    goal.check()?;
+    let error_mm = goal.error_mm;
     // With a bound alone, as far as it goes.
     let is_bound = error_mm.is_some() && goal.triangles.is_none();
     let all = if is_bound { 0 } else { usize::MAX };

@@ -91,7 +91,14 @@ pub fn read_mesh(path: impl AsRef<Path>, task: &Task) -> Result<TriangleMesh, Me
             path: path.to_path_buf(),
         });
     }
-    let mesh = match MeshFormat::of(path)? {
+    let format = MeshFormat::of(path)?;
+    // Waiting for a pipe could not be cancelled.
+    if path.metadata().is_ok_and(|known| !known.is_file()) {
+        return Err(MeshError::NoRegularFile {
+            path: path.to_path_buf(),
+        });
+    }
+    let mesh = match format {
         MeshFormat::Stl => stl_read::read(path, task)?,
         MeshFormat::Ply => ply_read::read(path, task)?,
         MeshFormat::Obj => obj_read::read(path, task)?,

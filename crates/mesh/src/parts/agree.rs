@@ -16,25 +16,28 @@ const STRIDE: usize = 1 << 14;
 /// By triangle: whether it is turned over, so that neighbours agree as far as that is possible.
 ///
 /// A sheet with one side only (a Möbius strip) stays as it is.
-pub(super) fn turned_over(mesh: &TriangleMesh, task: &Task) -> Result<Vec<bool>, Cancelled> {
-    let pairs = pairs(mesh, task)?;
+pub(super) fn turned_over(
+    mesh: &TriangleMesh,
+    pairs: &[Pair],
+    task: &Task,
+) -> Result<Vec<bool>, Cancelled> {
     // What is sound, as most meshes are, needs no second look.
     if pairs.iter().all(|pair| pair.agree) {
         return Ok(vec![false; mesh.triangles().len()]);
     }
-    let sheets = Sheets::of(mesh.triangles().len(), &pairs, task)?;
+    let sheets = Sheets::of(mesh.triangles().len(), pairs, task)?;
     Ok(sheets.smaller_parts(mesh))
 }
 
 /// The two triangles at an edge.
-struct Pair {
-    triangles: [u32; 2],
+pub(super) struct Pair {
+    pub(super) triangles: [u32; 2],
     /// Whether they run along it in opposite directions, as neighbours that face the same way do.
     agree: bool,
 }
 
 /// In an order that only the mesh decides.
-fn pairs(mesh: &TriangleMesh, task: &Task) -> Result<Vec<Pair>, Cancelled> {
+pub(super) fn pairs(mesh: &TriangleMesh, task: &Task) -> Result<Vec<Pair>, Cancelled> {
     let chunks = mesh.triangles().par_chunks(STRIDE).enumerate();
     let sides: Vec<Vec<([u32; 2], u32, bool)>> = chunks
         .map(|(chunk, triangles)| {

@@ -14,6 +14,8 @@ const STRIDE: usize = 1 << 16;
 pub(super) struct Labels {
     pub(super) of_triangles: Vec<u32>,
     pub(super) count: usize,
+    /// By vertex, whether several parts meet there; empty if none do anywhere.
+    is_shared: Vec<bool>,
 }
 
 /// What is known of a part.
@@ -23,7 +25,8 @@ pub(super) struct Part {
     pub(super) volume_mm3: f64,
     pub(super) triangles: usize,
     pub(super) is_closed: bool,
-    /// Its vertex with the highest x; a ray from there along x leaves the part at once.
+    /// Its vertex with the highest x, of those that are no other part's as far as there are any; a ray from
+    /// there along x tells what the part lies in.
     pub(super) tip: Vector,
     /// The innermost closed part that it lies in.
     pub(super) parent: Option<u32>,
@@ -41,20 +44,46 @@ impl Labels {
             }
             task.advance(triangles.len())?;
         }
-        let mut numbers = vec![u32::MAX; mesh.vertices_mm().len()];
+        let of_sets = mesh.triangles().iter().map(|t| sets.lowest(t[0]));
+        Ok(Self::numbered(of_sets, mesh.vertices_mm().len()))
+    }
+
+    /// Parts that share vertices with one another.
+    ///
+    /// `of_triangles` are any numbers below `limit`, equal within a part.
+    pub(super) fn touching(
+        mesh: &TriangleMesh,
+        of_triangles: impl Iterator<Item = u32>,
+        limit: usize,
+    ) -> Self {
+        let mut labels = Self::numbered(of_triangles, limit);
+        let mut of_vertices = vec![u32::MAX; mesh.vertices_mm().len()];
+        labels.is_shared = vec![false; mesh.vertices_mm().len()];
+        for (triangle, label) in mesh.triangles().iter().zip(&labels.of_triangles) {
+            for vertex in triangle.map(|vertex| vertex as usize) {
+                let known = std::mem::replace(&mut of_vertices[vertex], *label);
+                labels.is_shared[vertex] |= known != u32::MAX && known != *label;
+            }
+        }
+        labels
+    }
+
+    fn numbered(of_triangles: impl Iterator<Item = u32>, limit: usize) -> Self {
+        let mut numbers = vec![u32::MAX; limit];
         let mut count = 0;
-        let label = |triangle: &[u32; 3]| {
-            let number = &mut numbers[sets.lowest(triangle[0]) as usize];
+        let label = |set: u32| {
+            let number = &mut numbers[set as usize];
             if *number == u32::MAX {
                 *number = count;
                 count += 1;
             }
             *number
         };
-        Ok(Self {
-            of_triangles: mesh.triangles().iter().map(label).collect(),
+        Self {
+            of_triangles: of_triangles.map(label).collect(),
             count: count as usize,
-        })
+            is_shared: Vec::new(),
+        }
     }
 
     /// Volume, size and tip of each part; parents are not known yet.
@@ -67,7 +96,7 @@ impl Labels {
             .zip(self.of_triangles.par_chunks(STRIDE))
             .map(|(triangles, labels)| {
                 task.check()?;
-                Ok(measures(mesh, origin, triangles, labels))
+                Ok(measures(mesh, origin, triangles, labels, &self.is_shared))
             })
             .collect::<Result<_, Cancelled>>()?;
         let mut parts = vec![Measure::default(); self.count];
@@ -89,8 +118,15 @@ struct Measure {
     low: Vector,
     high: Vector,
     tip: Vector,
+    /// The tip of vertices that are no other part's.
+    own_tip: Vector,
     triangles: usize,
     rim: u64,
+}
+
+/// The one with the higher x, of equals the first.
+fn further(a: Vector, b: Vector) -> Vector {
+    if b[0] > a[0] { b } else { a }
 }
 
 impl Default for Measure {
@@ -101,6 +137,7 @@ impl Default for Measure {
             low: [f64::INFINITY; 3],
             high: [f64::NEG_INFINITY; 3],
             tip: [f64::NEG_INFINITY; 3],
+            own_tip: [f64::NEG_INFINITY; 3],
             triangles: 0,
             rim: 0,
         }
@@ -113,6 +150,7 @@ fn measures(
     origin: Vector,
     triangles: &[[u32; 3]],
     labels: &[u32],
+    is_shared: &[bool],
 ) -> Vec<(u32, Measure)> {
     let mut found: Vec<(u32, Measure)> = Vec::new();
     for (triangle, &label) in triangles.iter().zip(labels) {
@@ -121,7 +159,12 @@ fn measures(
             found.push((label, Measure::default()));
         }
         if let Some((_, measure)) = found.last_mut() {
-            measure.see(mesh.corners_mm(*triangle), origin);
+            let corners = mesh.corners_mm(*triangle);
+            measure.see(corners, origin);
+            let is_own = |vertex: u32| is_shared.get(vertex as usize).is_none_or(|shared| !shared);
+            for (_, corner) in triangle.iter().zip(corners).filter(|(v, _)| is_own(**v)) {
+                measure.own_tip = further(measure.own_tip, corner);
+            }
             measure.rim = measure.rim.wrapping_add(rim(*triangle));
         }
     }
@@ -141,6 +184,7 @@ impl Measure {
 
     fn add(&mut self, other: &Self) {
         self.reach(other.low, other.high, other.tip);
+        self.own_tip = further(self.own_tip, other.own_tip);
         self.volume6 += other.volume6;
         self.area2 = plus_scaled(self.area2, 1.0, other.area2);
         self.triangles += other.triangles;
@@ -150,10 +194,7 @@ impl Measure {
     fn reach(&mut self, low: Vector, high: Vector, tip: Vector) {
         self.low = [0, 1, 2].map(|axis| self.low[axis].min(low[axis]));
         self.high = [0, 1, 2].map(|axis| self.high[axis].max(high[axis]));
-        // The first of equals.
-        if tip[0] > self.tip[0] {
-            self.tip = tip;
-        }
+        self.tip = further(self.tip, tip);
     }
 
     fn part(&self, origin: Vector) -> Part {
@@ -162,7 +203,11 @@ impl Measure {
             volume_mm3: (self.volume6 - dot(self.area2, minus(middle, origin))) / 6.0,
             triangles: self.triangles,
             is_closed: self.rim == 0,
-            tip: self.tip,
+            tip: if self.own_tip[0].is_finite() {
+                self.own_tip
+            } else {
+                self.tip
+            },
             parent: None,
             is_cavity: false,
         }

@@ -5,6 +5,7 @@
 //! 2. [`keep_islands`] or [`fill_cavities`] decide which parts go, [`face_outward`] which are turned over.
 
 mod agree;
+mod bodies;
 mod inside;
 mod label;
 mod outward;
@@ -243,6 +244,10 @@ impl<'a> Parts<'a> {
     fn of(mesh: &'a TriangleMesh, task: &Task) -> Result<Self, MeshError> {
         task.begin("parts", mesh.triangles().len());
         let labels = Labels::of(mesh, task)?;
+        Self::labelled(mesh, labels, task)
+    }
+
+    fn labelled(mesh: &'a TriangleMesh, labels: Labels, task: &Task) -> Result<Self, MeshError> {
         let mut parts = labels.parts(mesh, task)?;
         if parts.len() > 1 {
             inside::find_parents(mesh, &labels, &mut parts, task)?;

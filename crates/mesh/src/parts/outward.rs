@@ -3,7 +3,8 @@
 use bonemesh_task::Task;
 
 use super::Parts;
-use super::agree::turned_over;
+use super::agree::{pairs, turned_over};
+use super::bodies::bodies;
 use crate::{MeshError, TriangleMesh};
 
 /// What [`face_outward`] gives.
@@ -23,18 +24,20 @@ pub struct FacedOutward {
 ///    its cavities face inward, what floats in these outward. Everything else in it stays.
 ///
 /// The mesh is taken as its file gives it back ([`TriangleMesh::as_written`]).
-/// Edges of three and more triangles say nothing of sides, and neither does an open part of which way is out:
-/// there the larger part decides. The result is the same for any number of threads.
+/// Edges of three and more triangles say nothing of sides: closed bodies that touch in edges or corners are
+/// looked at one by one. Neither does an open part say which way is out: there the larger part decides. The result is the same for any number of threads.
 ///
 /// # Errors
 /// [`MeshError::NotFinite`] for a coordinate too large for a 32-bit float, [`MeshError::Cancelled`].
 pub fn face_outward(mesh: &TriangleMesh, task: &Task) -> Result<FacedOutward, MeshError> {
     let mesh = &mesh.as_written(task)?;
     task.begin("winding", 2 * mesh.triangles().len());
-    let mut is_turned = turned_over(mesh, task)?;
+    let pairs = pairs(mesh, task)?;
+    let mut is_turned = turned_over(mesh, &pairs, task)?;
     task.advance(mesh.triangles().len())?;
     let agreeing = with_turned(mesh, &is_turned)?;
-    let parts = Parts::of(&agreeing, task)?;
+    let bodies = bodies(&agreeing, &pairs, task)?;
+    let parts = Parts::labelled(&agreeing, bodies, task)?;
     let is_wrong: Vec<bool> = (0..parts.known.len()).map(|p| parts.is_wrong(p)).collect();
     for (is_turned, part) in is_turned.iter_mut().zip(&parts.labels.of_triangles) {
         *is_turned ^= is_wrong[*part as usize];

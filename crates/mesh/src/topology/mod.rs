@@ -156,8 +156,13 @@ fn measure(mesh: &TriangleMesh, task: &Task) -> Result<Measures, MeshError> {
 }
 
 /// Whether two corners are the same vertex.
-fn is_collapsed([a, b, c]: [u32; 3]) -> bool {
+pub(crate) fn is_collapsed([a, b, c]: [u32; 3]) -> bool {
     a == b || b == c || c == a
+}
+
+/// Whether three corners lie in a line, as far as numbers can tell.
+pub(crate) fn is_without_area(corners_mm: [[f64; 3]; 3]) -> bool {
+    Shape::of(corners_mm, corners_mm[0]).is_flat
 }
 
 /// What one triangle adds to the sums.

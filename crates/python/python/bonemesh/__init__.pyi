@@ -30,6 +30,7 @@ __all__ = [
     "check",
     "compare",
     "decimate",
+    "clean",
     "face_outward",
     "faults",
     "fill_cavities",
@@ -609,6 +610,12 @@ def check(
     progress: _Progress | None = None,
     cancel: Cancel | None = None,
 ) -> dict[str, Any]: ...
+def clean(
+    mesh: Mesh,
+    *,
+    progress: _Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Mesh: ...
 def face_outward(
     mesh: Mesh,
     *,
