@@ -57,6 +57,50 @@ def test_what_faces_the_wrong_way_is_turned(shell: bonemesh.Mesh) -> None:
     assert is_printable(bonemesh.face_outward(inside_out))
 
 
+def test_triangles_without_area_or_given_twice_are_taken_out(
+    shell: bonemesh.Mesh,
+) -> None:
+    # One side of an edge has a corner on it that the other has not; a triangle without area lies between.
+    from_, to, tip = shell.triangles[40]
+    middle = shell.vertices[[from_, to]].astype(np.float64).mean(axis=0)
+    on_edge = len(shell.vertices)
+    vertices = np.vstack([shell.vertices, middle])
+    more = [[from_, on_edge, tip], [on_edge, to, tip], [from_, to, on_edge]]
+    torn = np.delete(shell.triangles, 40, axis=0)
+    broken = bonemesh.Mesh(
+        vertices, np.vstack([torn, more, torn[7:9], [[3, 3, 4]]]).astype(np.uint32)
+    )
+    assert not is_printable(broken)
+    cleaned = bonemesh.clean(broken)
+    assert cleaned.report["removed_doubled"] == 2
+    assert cleaned.report["removed_degenerate"] >= 1
+    assert bonemesh.check(cleaned)["self_intersections"] == 0
+    assert bonemesh.check(cleaned)["watertight"]
+
+
+@pytest.mark.parametrize("few", [0, 3])
+def test_fewer_triangles_than_enclose_anything_are_refused(
+    shell: bonemesh.Mesh, few: int
+) -> None:
+    with pytest.raises(bonemesh.BonemeshError, match="at least 4"):
+        bonemesh.decimate(shell, triangles=few)
+    volume = bonemesh.phantom("tube", coarser=4.0)
+    with pytest.raises(bonemesh.BonemeshError, match="at least 4"):
+        bonemesh.render(volume, triangles=few)
+
+
+def test_the_report_says_what_a_reduction_did(shell: bonemesh.Mesh) -> None:
+    volume = bonemesh.check(shell)["volume_mm3"]
+    fewer = bonemesh.decimate(shell, triangles=len(shell.triangles) // 8)
+    change = 100 * (bonemesh.check(fewer)["volume_mm3"] / volume - 1)
+    assert fewer.report["volume_change_percent"] == pytest.approx(change, abs=1e-3)
+    away = np.abs(bonemesh.signed_distances(shell.vertices, fewer))
+    assert fewer.report["largest_distance_mm"] == pytest.approx(away.max(), abs=1e-4)
+    smoothed = bonemesh.smooth(shell, tolerance_mm=0.1)
+    assert abs(smoothed.report["volume_change_percent"]) < 1
+    assert smoothed.report["largest_distance_mm"] is None
+
+
 @pytest.mark.parametrize("bad", ["every", -1.0, float("nan")])
 def test_what_is_no_size_of_holes_is_refused(shell: bonemesh.Mesh, bad: object) -> None:
     with pytest.raises(bonemesh.BonemeshError):

@@ -245,6 +245,8 @@ def test_outputs_onto_a_full_disk(command, ct_folder, stl, selection, small_disk
     for words, suffix in writers(ct_folder, stl, selection):
         fails(command(*words, "-o", disk / f"out{suffix}"), f"out{suffix}")
         assert list(disk.iterdir()) == []
+    fails(command("repair", stl, "-o", disk / "out.3mf"), "out.3mf")
+    assert list(disk.iterdir()) == []
     fails(command("phantom", "tube", disk / "tube", "--coarser", "4"), "room")
     assert list(disk.iterdir()) == []
 

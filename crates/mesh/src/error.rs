@@ -99,12 +99,6 @@ pub enum MeshError {
         /// How many were asked for.
         triangles: usize,
     },
-    /// The file is no file on a disk.
-    #[error("{} is a pipe or device; name a file on a disk", path.display())]
-    NoRegularFile {
-        /// The file.
-        path: PathBuf,
-    },
     /// An empty mesh was to be written.
     #[error("the mesh has no triangles, so {} was not written; check the step that made it", path.display())]
     NothingToWrite {
@@ -145,7 +139,7 @@ pub enum MeshError {
         /// What the operating system said.
         reason: String,
     },
-    /// What is there is a device, a pipe or the like: a rename would destroy it.
+    /// What is there is a device, a pipe or the like: a rename would destroy it, and waiting for it could not be cancelled.
     #[error("{} is no ordinary file; choose another name", path.display())]
     NotAFile {
         /// The file.

@@ -232,6 +232,8 @@ fn a_pipe_is_refused_and_stays() {
     let refused = write_mesh(&pipe, &torus(8, 8), &Task::default());
     assert!(matches!(refused, Err(MeshError::NotAFile { .. })));
     assert!(fs::metadata(&pipe).unwrap().file_type().is_fifo());
+    let refused = read(&pipe);
+    assert!(matches!(refused, Err(MeshError::NotAFile { .. })));
 }
 
 #[test]

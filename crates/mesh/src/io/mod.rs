@@ -94,7 +94,7 @@ pub fn read_mesh(path: impl AsRef<Path>, task: &Task) -> Result<TriangleMesh, Me
     let format = MeshFormat::of(path)?;
     // Waiting for a pipe could not be cancelled.
     if path.metadata().is_ok_and(|known| !known.is_file()) {
-        return Err(MeshError::NoRegularFile {
+        return Err(MeshError::NotAFile {
             path: path.to_path_buf(),
         });
     }

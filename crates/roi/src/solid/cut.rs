@@ -40,12 +40,15 @@ const SHIFTS: [f64; 3] = [
 ];
 
 /// What is known before the bone is looked at.
+#[derive(Clone)]
 pub(super) struct Cut<'a> {
     pub(super) request: &'a SolidRequest,
     pub(super) step_mm: f64,
     /// The patch's mean direction into the bone.
     pub(super) inward: Vector,
     pub(super) sheet: Sheet,
+    /// How much farther (mm) than its clearance a plate is kept off the bone.
+    pub(super) margin_mm: f64,
 }
 
 impl Cut<'_> {
@@ -129,6 +132,10 @@ impl Cut<'_> {
         }
     }
 
+    fn kept_off_mm(&self) -> f64 {
+        self.request.clearance.mm() + self.margin_mm
+    }
+
     /// The one direction of a straight cut.
     fn straight(&self) -> Option<Vector> {
         match self.request.direction {
@@ -146,7 +153,7 @@ impl Cut<'_> {
     fn space(&self, mesh: &TriangleMesh, frame: Frame) -> Option<Space> {
         let thickness_mm = self.request.thickness.mm();
         let [top_mm, bottom_mm] = match self.request.direction {
-            Direction::Outward => [thickness_mm + self.request.clearance.mm(), 0.0],
+            Direction::Outward => [thickness_mm + self.kept_off_mm(), 0.0],
             _ => [self.lid_mm(), thickness_mm],
         };
         let straight = self.straight();
@@ -187,12 +194,12 @@ impl Cut<'_> {
                 kept_off: None,
             })));
         };
-        let clearance_mm = self.request.clearance.mm();
+        let kept_off_mm = self.kept_off_mm();
         Ok(Cutter::Below(Box::new(Below {
             sheet,
-            top_mm: -(clearance_mm + thickness_mm),
+            top_mm: -(kept_off_mm + thickness_mm),
             bottom_mm: SMOOTHED_MM,
-            kept_off: Some((whole.lookup(task)?, clearance_mm)),
+            kept_off: Some((whole.lookup(task)?, kept_off_mm)),
         })))
     }
 }

@@ -35,6 +35,7 @@ mod straight;
 use bonemesh_mesh::TriangleMesh;
 use bonemesh_task::Task;
 use rayon::prelude::*;
+use rustc_hash::FxHashSet;
 
 pub(crate) use self::crop::Neighbourhood;
 pub(crate) use self::lattice::Frame;
@@ -62,6 +63,10 @@ const EDGES_IN_WIDTH: f64 = 6.0;
 const EDGES_BESIDE: f64 = 6.0;
 /// Largest step (mm) of a plate, or its clearance if that is more: else it would pass over ridges of the bone.
 const PLATE_STEP_MM: f64 = 0.5;
+/// How often a plate is cut that comes nearer to the bone than its clearance.
+const PLATE_TRIES: u32 = 4;
+/// How much nearer (mm) counts as no nearer: less than any printer can tell.
+const GAP_LEEWAY_MM: f64 = 0.01;
 /// Least thickness, and least distance from the outline to the middle of a patch, in steps.
 const LEAST_STEPS: f64 = 1.5;
 
@@ -124,9 +129,8 @@ pub struct Solid {
 /// The front are the triangles of the mesh, unchanged but along the outline, which runs smoothly between
 /// selected vertices and others; the sides stand upright on the surface, or lie along a straight direction;
 /// the back is the bone's far side where that is within reach, else as deep as the thickness below the
-/// nearest place of the patch, or straight behind it. A plate keeps its clearance from all bone near, as far
-/// as steps of half a millimetre or of the clearance tell ([`Solid::gap_mm`] says where it does not), and its outer
-/// side follows the patch smoothed. The result is the same for any number of threads and any order of
+/// nearest place of the patch, or straight behind it. A plate keeps its clearance from all bone near
+/// ([`Solid::gap_mm`] says where that was not to be had), and its outer side follows the patch smoothed. The result is the same for any number of threads and any order of
 /// the selection.
 ///
 /// # Errors
@@ -270,11 +274,11 @@ fn cut_out(
         step_mm,
         inward,
         sheet,
+        margin_mm: 0.0,
     };
-    let cut = cut.sound(mesh, &is_patch, task)?;
-    let gap_mm = match request.direction {
-        Direction::Outward => least_gap_mm(&cut, mesh, request.clearance.mm(), task)?,
-        _ => None,
+    let (cut, gap_mm) = match request.direction {
+        Direction::Outward => plate(cut, mesh, &is_patch, task)?,
+        _ => (cut.sound(mesh, &is_patch, task)?, None),
     };
     Ok(Solid {
         mesh: cut,
@@ -285,6 +289,32 @@ fn cut_out(
         closed: 0,
         gap_mm,
     })
+}
+
+/// The plate that comes nowhere nearer to the bone than its clearance, as far as a few tries find one, and how
+/// near it comes if nearer.
+///
+/// Between the nodes of its lattice a plate comes nearer to ridges; so much farther off it is cut again.
+fn plate(
+    mut cut: Cut<'_>,
+    mesh: &TriangleMesh,
+    is_patch: &FxHashSet<[u32; 3]>,
+    task: &Task,
+) -> Result<(TriangleMesh, Option<f64>), RoiError> {
+    let clearance_mm = cut.request.clearance.mm();
+    for _ in 1..PLATE_TRIES {
+        let plate = cut.clone().sound(mesh, is_patch, task)?;
+        let gap_mm = least_gap_mm(&plate, mesh, clearance_mm, task)?;
+        let lacking_mm = gap_mm.map_or(0.0, |gap_mm| clearance_mm - gap_mm);
+        if lacking_mm < GAP_LEEWAY_MM {
+            return Ok((plate, None));
+        }
+        cut.margin_mm += lacking_mm;
+    }
+    let plate = cut.sound(mesh, is_patch, task)?;
+    let gap_mm = least_gap_mm(&plate, mesh, clearance_mm, task)?;
+    let is_nearer = |gap_mm: &f64| clearance_mm - gap_mm >= GAP_LEEWAY_MM;
+    Ok((plate, gap_mm.filter(is_nearer)))
 }
 
 /// How far apart the nodes are for a patch of that box and area, where so thin a cut can be told at all.

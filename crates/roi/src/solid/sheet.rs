@@ -13,6 +13,7 @@ use crate::RoiError;
 use crate::vector::{Vector, cross, dot, length, minus, plus_scaled, unit};
 
 /// A part of a neighbourhood's surface.
+#[derive(Clone)]
 pub(super) struct Sheet {
     pub(super) mesh: TriangleMesh,
     /// By vertex: how far (mm) inside of the outline, below 0 outside.

@@ -197,12 +197,8 @@ fn a_plate_keeps_its_clearance_from_ridges_narrower_than_its_steps() {
     let least = gaps
         .map(|found| found.squared_mm2.sqrt())
         .fold(0.5, f64::min);
-    assert!(least > 0.3, "{least} mm");
-    assert!(
-        plate.gap_mm.is_none_or(|gap| (gap - least).abs() < 0.05),
-        "{:?}",
-        plate.gap_mm
-    );
+    assert!(least > 0.48, "{least} mm");
+    assert_eq!(plate.gap_mm, None);
 }
 
 #[test]
