@@ -96,6 +96,22 @@ def test_mirrored_pieces_of_both_sides_are_both_cut(shell, cap):
     assert both.report["dropped_pieces"] == 0
 
 
+def test_mirrored_sides_whose_solids_would_meet_are_cut_as_one(tmp_path):
+    hu = np.zeros((40, 40, 70), dtype=np.int16)
+    for low, high in [(8, 14), (56, 62)]:
+        hu[5:35, 5:35, low:high] = 1000
+    pair = bonemesh.render(bonemesh.Volume(hu, np.eye(4)), method="isosurface")
+    x, y, z = pair.vertices.T
+    near = (np.abs(y - 19.5) < 8) & (np.abs(z - 19.5) < 8)
+    # Both faces of the left plate: each would be cut to the far side, which is the other's.
+    both = np.flatnonzero(near & (x > 35))
+    plane = (1.0, 0.0, 0.0, 34.5)
+    solid = bonemesh.select_roi(pair, both, thickness_mm=9, mirror=plane)
+    certificate(solid)
+    assert solid.report["volume_mm3"] == pytest.approx(16 * 16 * 6, rel=0.1)
+    assert solid.vertices[:, 0].max() < 20
+
+
 def test_directions(shell, cap):
     middle = np.linalg.norm(shell.vertices[cap], axis=1).mean()
     plate = bonemesh.select_roi(
@@ -197,6 +213,8 @@ def test_the_thickness_under_a_selection(shell, cap):
     wall = radii[-100] - radii[100]
     assert found["min_mm"] <= found["median_mm"] <= found["max_mm"]
     assert found["median_mm"] == pytest.approx(wall, abs=0.3)
+    inside_out = bonemesh.Mesh(shell.vertices, shell.triangles[:, ::-1])
+    assert bonemesh.local_thickness(inside_out, cap) == found
     flat = bonemesh.Mesh([[0, 0, 0], [9, 0, 0], [0, 9, 0]], [[0, 1, 2]])
     assert bonemesh.local_thickness(flat, [0, 1, 2]) is None
 

@@ -5,7 +5,8 @@ use std::num::NonZeroUsize;
 use std::time::Instant;
 
 use bonemesh_mesh::{
-    HoleLimits, TriangleMesh, TriangleTree, clean, face_outward, fill_holes, find_intersections,
+    HoleLimits, TriangleMesh, TriangleTree, check_nesting, clean, face_outward, fill_holes,
+    find_intersections,
 };
 use bonemesh_roi::{
     ClearanceMm, Direction, Method, RoiError, Solid, SolidRequest, ThicknessMm, counterparts,
@@ -237,7 +238,7 @@ fn of_sides(
             mended = done;
         }
         let whole = joined(&solids)?;
-        if find_intersections(&TriangleTree::new(&whole.mesh, task)?, 1, task)?.count == 0 {
+        if are_apart(&whole.mesh, task)? {
             let solids = if is_each { solids } else { vec![whole] };
             return Ok((solids, mended));
         }
@@ -248,6 +249,12 @@ fn of_sides(
     all.sort_unstable();
     all.dedup();
     with_mesh_mended(mesh, &all, request, is_each, task)
+}
+
+/// Whether closed parts neither pass through one another nor lie in one another.
+fn are_apart(mesh: &TriangleMesh, task: &Task) -> Result<bool, Error> {
+    let tree = TriangleTree::new(mesh, task)?;
+    Ok(find_intersections(&tree, 1, task)?.count == 0 && check_nesting(mesh, task)?.doubled == 0)
 }
 
 /// Several solids as one.

@@ -5,7 +5,7 @@ use bonemesh_task::Task;
 
 use crate::RoiError;
 use crate::selection::Selection;
-use crate::solid::{Neighbourhood, Space};
+use crate::solid::{Neighbourhood, Space, is_inside_out};
 
 /// How far (mm) from the selection the other side of the bone is looked for.
 const REACH_MM: f64 = 40.0;
@@ -24,7 +24,7 @@ pub struct LocalThickness {
 }
 
 /// Measures how thick the bone is under the `selected` vertices, as [`bonemesh_mesh::wall_thickness`] does;
-/// `None` where nothing lies opposite within 40 mm.
+/// `None` where nothing lies opposite within 40 mm. A mesh that is inside out is measured as if it were not.
 ///
 /// # Errors
 /// [`RoiError::NoSelection`], [`RoiError::OneVertex`], [`RoiError::Index`], or the work was cancelled.
@@ -47,7 +47,13 @@ pub fn local_thickness(
         .step_by(own.len().div_ceil(MOST).max(1))
         .copied()
         .collect();
-    let near = TriangleMesh::new(near.vertices_mm, near.triangles)?;
+    let mut triangles = near.triangles;
+    if is_inside_out(mesh) {
+        for corners in &mut triangles {
+            corners.swap(1, 2);
+        }
+    }
+    let near = TriangleMesh::new(near.vertices_mm, triangles)?;
     let tree = TriangleTree::new(&near, task)?;
     let mut thickness = wall_thickness_at(&tree, &some, task)?;
     thickness.retain(|mm| mm.is_finite());

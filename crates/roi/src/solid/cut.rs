@@ -217,7 +217,7 @@ fn refuse_unsound(bone: &TriangleMesh, task: &Task) -> Result<(), RoiError> {
 }
 
 /// Whether a closed surface has its inside outside.
-fn is_inside_out(mesh: &TriangleMesh) -> bool {
+pub(crate) fn is_inside_out(mesh: &TriangleMesh) -> bool {
     let Some([from, _]) = mesh.bounds_mm() else {
         return false;
     };

@@ -38,6 +38,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
 pub(crate) use self::crop::Neighbourhood;
+pub(crate) use self::cut::is_inside_out;
 pub(crate) use self::lattice::Frame;
 pub(crate) use self::space::Space;
 pub(crate) use self::straight::covered;
