@@ -1,6 +1,8 @@
 """The published study, repeated on a CT series or on a phantom head.
 
-usage: study.py --out DIR [--series UID|N] [--hu HU] [CT_FOLDER]
+usage: study.py --out DIR [--series UID|N] [--hu HU] [CT_FOLDER]...
+
+The first folder is studied; other programs are tried on all of them.
 
 `study.md`, a CSV file for each table and the pictures go to the folder `--out`.
 """
@@ -16,6 +18,7 @@ import numpy as np
 import study_models
 import study_pictures
 import study_sampling
+import study_targeted
 import study_tools
 from bench_machine import machine
 from study_report import Picture, Report
@@ -45,7 +48,7 @@ def say(text: str) -> None:
 def parsed() -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser()
-    parser.add_argument("folder", type=Path, nargs="?", metavar="CT_FOLDER")
+    parser.add_argument("folders", type=Path, nargs="*", metavar="CT_FOLDER")
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--series")
     parser.add_argument("--hu", type=float, default=SKULL_HU)
@@ -54,11 +57,11 @@ def parsed() -> argparse.Namespace:
 
 def volume(words: argparse.Namespace) -> bonemesh.Volume:
     """The series, or the phantom head."""
-    if words.folder is None:
+    if not words.folders:
         return bonemesh.phantom("head")
     series = words.series
     chosen = int(series) if series is not None and series.isdecimal() else series
-    return bonemesh.read_series(words.folder, chosen)
+    return bonemesh.read_series(words.folders[0], chosen)
 
 
 def models(report: Report) -> None:
@@ -76,6 +79,9 @@ def models(report: Report) -> None:
     say("curved shape")
     report.add(curved(report.folder))
     report.add(curved_targeted(report.folder))
+    report.add(study_targeted.table_curved(curved_slice()))
+    say("femur")
+    report.add(study_targeted.table_femur())
 
 
 def curved_slice() -> Array:
@@ -182,7 +188,7 @@ def main() -> None:
     words.out.mkdir(parents=True, exist_ok=True)
     begun = time.perf_counter()
     scan = volume(words)
-    what = "a phantom head" if words.folder is None else words.folder.name
+    what = words.folders[0].name if words.folders else "a phantom head"
     report = Report(words.out, f"The published study, repeated on {what}")
     place = machine()
     report.text(
@@ -193,7 +199,7 @@ def main() -> None:
     models(report)
     sampling(report, scan, words.hu)
     report.heading("Other programs")
-    report.add(study_tools.table_tools(words.folder, words.hu))
+    report.add(study_tools.table_tools(words.folders, words.hu))
     report.text(f"Made in {time.perf_counter() - begun:.0f} s.")
     report.save()
 

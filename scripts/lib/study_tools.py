@@ -1,6 +1,6 @@
 """Other programs beside ours, from a folder to a mesh: seconds, error on bodies of known shape, topology.
 
-usage: study_tools.py HU [CT_FOLDER]        prints the table
+usage: study_tools.py HU [CT_FOLDER]...        prints the table
 
 Each runs as a program of its own, without a screen, on a series that is written for it. Two of them give meshes
 in frames of their own, so all are laid on the truth by the middle of the bounding box, mirrored as fits best.
@@ -12,7 +12,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -199,15 +199,15 @@ def on_folder(name: str, folder: Path, hu: float, body: str | None) -> list[list
     return rows
 
 
-def table_tools(folder: Path | None, hu: float) -> Table:
-    """Every program on every body of known shape, and on a folder if there is one."""
+def table_tools(folders: Sequence[Path], hu: float) -> Table:
+    """Every program on every body of known shape, and on folders of CT images."""
     rows: list[list[Cell]] = []
     with tempfile.TemporaryDirectory() as scratch:
         for body in BODIES:
             series = bonemesh.write_phantom(body, Path(scratch) / body)["series"]
             rows += on_folder(body, Path(series), hu, body)
-    if folder is not None:
-        rows += on_folder("the series", folder, hu, None)
+    for folder in folders:
+        rows += on_folder(folder.name, folder, hu, None)
     missing = (
         ""
         if INVESALIUS.exists()
@@ -224,8 +224,5 @@ def table_tools(folder: Path | None, hu: float) -> Table:
 
 
 if __name__ == "__main__":
-    print(
-        table_tools(
-            Path(sys.argv[2]) if len(sys.argv) > 2 else None, float(sys.argv[1])
-        ).markdown()
-    )
+    hu, *folders = sys.argv[1:]
+    print(table_tools([Path(folder) for folder in folders], float(hu)).markdown())
