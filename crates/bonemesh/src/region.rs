@@ -259,21 +259,19 @@ fn are_apart(mesh: &TriangleMesh, task: &Task) -> Result<bool, Error> {
 
 /// Several solids as one.
 fn joined(solids: &[Solid]) -> Result<Solid, Error> {
-    let mut whole = solids.first().ok_or(RoiError::NothingCut)?.clone();
-    let (mut vertices_mm, mut triangles) = std::mem::take(&mut whole.mesh).into_parts();
-    for solid in &solids[1..] {
+    let (first, others) = solids.split_first().ok_or(RoiError::NothingCut)?;
+    let mut whole = Solid {
+        mesh: TriangleMesh::together(solids.iter().map(|solid| &solid.mesh))?,
+        ..first.clone()
+    };
+    for solid in others {
         whole.selected += solid.selected;
         whole.patch_mm2 += solid.patch_mm2;
         whole.dropped += solid.dropped;
         whole.closed += solid.closed;
         let gaps = [whole.gap_mm, solid.gap_mm].into_iter().flatten();
         whole.gap_mm = gaps.reduce(f64::min);
-        let next = vertices_mm.len() as u32;
-        vertices_mm.extend(solid.mesh.vertices_mm());
-        let corners = solid.mesh.triangles().iter();
-        triangles.extend(corners.map(|t| t.map(|v| next + v)));
     }
-    whole.mesh = TriangleMesh::new(vertices_mm, triangles)?;
     Ok(whole)
 }
 

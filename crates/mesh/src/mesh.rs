@@ -74,6 +74,27 @@ impl TriangleMesh {
         (self.vertices_mm, self.triangles)
     }
 
+    /// Several meshes as one, their vertices and triangles one after another; nothing is made one.
+    ///
+    /// # Errors
+    /// [`MeshError::TooManyVertices`]
+    pub fn together<'a>(meshes: impl IntoIterator<Item = &'a Self>) -> Result<Self, MeshError> {
+        let mut whole = Self::default();
+        for mesh in meshes {
+            let first = whole.vertices_mm.len();
+            let vertices = first + mesh.vertices_mm.len();
+            let (Ok(first), Ok(_)) = (u32::try_from(first), u32::try_from(vertices)) else {
+                return Err(MeshError::TooManyVertices(vertices));
+            };
+            whole.vertices_mm.extend(&mesh.vertices_mm);
+            let triangles = mesh.triangles.iter();
+            whole
+                .triangles
+                .extend(triangles.map(|t| t.map(|v| first + v)));
+        }
+        Ok(whole)
+    }
+
     /// The three corners (mm) of a triangle of this mesh.
     #[inline]
     pub fn corners_mm(&self, triangle: [u32; 3]) -> [[f64; 3]; 3] {

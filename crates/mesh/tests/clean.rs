@@ -134,7 +134,9 @@ proptest! {
         let (mended, gone) = cleaned(&given);
         prop_assert!(mended.triangles().len() + gone[1] <= given.triangles().len());
         let mut sets: Vec<[u32; 3]> = mended.triangles().to_vec();
-        sets.iter_mut().for_each(|corners| corners.sort_unstable());
+        for corners in &mut sets {
+            corners.sort_unstable();
+        }
         sets.sort_unstable();
         prop_assert!(sets.iter().all(|[a, b, c]| a < b && b < c));
         prop_assert!(sets.windows(2).all(|pair| pair[0] != pair[1]));

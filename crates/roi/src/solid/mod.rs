@@ -150,19 +150,11 @@ pub fn select_solid(
     let reach_mm = BESIDE_MM + request.reach_mm() * (1.0 + BULGE);
     let parts = meant.patch.parts(Some(reach_mm), 2.0 * BESIDE_MM);
     let solids = cut_each(mesh, &parts, request, Some(inward), task)?;
-    let mut vertices_mm = Vec::new();
-    let mut triangles = Vec::new();
     let dropped = meant.dropped + parts.len() - solids.len();
     let gap_mm = solids.iter().filter_map(|solid| solid.gap_mm);
     let gap_mm = gap_mm.reduce(f64::min);
-    for solid in solids {
-        let first = vertices_mm.len() as u32;
-        let (places, corners) = solid.mesh.into_parts();
-        vertices_mm.extend(places);
-        triangles.extend(corners.into_iter().map(|t| t.map(|v| first + v)));
-    }
     Ok(Solid {
-        mesh: TriangleMesh::new(vertices_mm, triangles)?,
+        mesh: TriangleMesh::together(solids.iter().map(|solid| &solid.mesh))?,
         selected: selection.indices().len(),
         patch_mm2: meant.patch.area_mm2(),
         inward,
