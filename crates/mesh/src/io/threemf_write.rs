@@ -1,7 +1,8 @@
 //! 3MF: a zip archive with a model in XML, one object with one mesh.
 
 use std::fs::File;
-use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::io::{self, BufWriter, Write};
+use std::mem::ManuallyDrop;
 
 use bonemesh_task::Task;
 use zip::write::SimpleFileOptions;
@@ -39,7 +40,9 @@ pub(super) fn write(
     task: &Task,
 ) -> Result<(), Fault> {
     task.begin("write", mesh.vertices_mm().len() + mesh.triangles().len());
-    let mut archive = ZipWriter::new(BufWriter::new(UntilFault::new(file)));
+    // An archive that is dropped before its end tries to finish, and says on the terminal what came of that:
+    // after a fault its few buffers are rather lost.
+    let mut archive = ManuallyDrop::new(ZipWriter::new(BufWriter::new(file)));
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Deflated)
         .compression_level(Some(LEVEL))
@@ -55,54 +58,10 @@ pub(super) fn write(
     archive
         .start_file(MODEL, options)
         .map_err(io::Error::from)?;
-    write_model(&mut archive, mesh, frame, task)?;
+    write_model(&mut *archive, mesh, frame, task)?;
+    let archive = ManuallyDrop::into_inner(archive);
     archive.finish().map_err(io::Error::from)?.flush()?;
     Ok(())
-}
-
-/// A writer that fails once and then lets everything pass: an archive that is given up tries to finish what it
-/// has begun, and says on the terminal what that came to.
-struct UntilFault<W> {
-    file: W,
-    has_failed: bool,
-}
-
-impl<W: Write + Seek> UntilFault<W> {
-    fn new(file: W) -> Self {
-        Self {
-            file,
-            has_failed: false,
-        }
-    }
-
-    fn unless_failed<T>(
-        &mut self,
-        otherwise: T,
-        work: impl FnOnce(&mut W) -> io::Result<T>,
-    ) -> io::Result<T> {
-        if self.has_failed {
-            return Ok(otherwise);
-        }
-        let done = work(&mut self.file);
-        self.has_failed = done.is_err();
-        done
-    }
-}
-
-impl<W: Write + Seek> Write for UntilFault<W> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.unless_failed(bytes.len(), |file| file.write(bytes))
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.unless_failed((), Write::flush)
-    }
-}
-
-impl<W: Write + Seek> Seek for UntilFault<W> {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        self.unless_failed(0, |file| file.seek(to))
-    }
 }
 
 fn write_model(
