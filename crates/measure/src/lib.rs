@@ -45,7 +45,6 @@ mod samples;
 mod signed;
 mod spread;
 mod surfaces;
-mod vector;
 mod volume;
 
 use bonemesh_mesh::MeshError;

@@ -2,7 +2,7 @@
 
 use bonemesh_mesh::TriangleMesh;
 
-use crate::vector::{cross, length, minus};
+use bonemesh_mesh::vector::{cross, length, minus};
 
 /// Steps of the sequence that spreads places over triangles: the plastic number's powers, after M. Roberts, *The
 /// unreasonable effectiveness of quasirandom sequences*, 2018.

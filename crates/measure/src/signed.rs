@@ -8,7 +8,7 @@ use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;
 
 use crate::MeasureError;
-use crate::vector::{Vector, cross, dot, length, minus};
+use bonemesh_mesh::vector::{Vector, cross, dot, length, minus};
 
 /// Places done between two looks at the task.
 const BATCH: usize = 512;

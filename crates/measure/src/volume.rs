@@ -4,7 +4,7 @@ use bonemesh_mesh::TriangleMesh;
 use bonemesh_task::chunked_sum;
 use rayon::prelude::*;
 
-use crate::vector::{cross, dot, minus};
+use bonemesh_mesh::vector::{cross, dot, minus};
 
 /// The volume (mm3) inside a closed mesh, negative if it faces inward; of an open one it means nothing.
 ///

@@ -67,7 +67,7 @@ mod stars;
 mod thickness;
 mod topology;
 mod tree;
-mod vector;
+pub mod vector;
 
 pub use clean::{Cleaned, clean};
 pub use decimate::{Decimated, Decimation, decimate};

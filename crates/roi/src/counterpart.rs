@@ -13,7 +13,7 @@ use bonemesh_task::Task;
 use crate::RoiError;
 use crate::selection::Selection;
 use crate::solid::{Frame, Neighbourhood, Space, covered};
-use crate::vector::{Vector, cross, dot, length, minus, plus_scaled, unit};
+use bonemesh_mesh::vector::{Vector, cross, dot, length, minus, plus_scaled, unit_or_zero};
 
 /// Side of a cell of the area (mm); larger where the area is.
 const CELL_MM: f64 = 0.5;
@@ -119,7 +119,9 @@ fn sides(mesh: &TriangleMesh, patch: Vec<[u32; 3]>) -> Vec<Side> {
     pieces.sort_by(|a, b| length(b.facing).total_cmp(&length(a.facing)));
     let mut sides: Vec<Side> = Vec::new();
     for piece in pieces {
-        let same = |side: &&mut Side| dot(unit(side.facing), unit(piece.facing)) > SAME_SIDE;
+        let same = |side: &&mut Side| {
+            dot(unit_or_zero(side.facing), unit_or_zero(piece.facing)) > SAME_SIDE
+        };
         if let Some(side) = sides.iter_mut().find(same) {
             side.facing = plus_scaled(side.facing, 1.0, piece.facing);
             side.triangles.extend(piece.triangles);
@@ -133,7 +135,7 @@ fn sides(mesh: &TriangleMesh, patch: Vec<[u32; 3]>) -> Vec<Side> {
 impl Side {
     /// Whether nothing lies before most of it.
     fn is_seen(&self, tree: &TriangleTree<'_>) -> bool {
-        let outward = unit(self.facing);
+        let outward = unit_or_zero(self.facing);
         let every = self.triangles.len().div_ceil(SAMPLES);
         let samples = self.triangles.iter().step_by(every);
         let is_covered = |triangle: &&[u32; 3]| {
@@ -153,7 +155,7 @@ impl Side {
         plane: &Plane,
         task: &Task,
     ) -> Result<Vec<u32>, RoiError> {
-        let inward = unit(self.facing.map(|v| -v));
+        let inward = unit_or_zero(self.facing.map(|v| -v));
         let area = Area::of(mesh, &self.triangles, Frame::along(inward));
         let area = area.ok_or(RoiError::NoCounterpart)?;
         task.check()?;

@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use crate::RoiError;
-use crate::vector::{Vector, length, unit};
+use bonemesh_mesh::vector::{Vector, length, unit_or_zero};
 
 /// Which way it goes from the patch.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -29,7 +29,7 @@ impl Direction {
     pub fn along(direction: [f64; 3]) -> Result<Self, RoiError> {
         let size = length(direction);
         if size > 0.0 && size.is_finite() {
-            Ok(Self::Along(unit(direction)))
+            Ok(Self::Along(unit_or_zero(direction)))
         } else {
             Err(RoiError::Direction(text(direction)))
         }

@@ -41,7 +41,6 @@ mod solid;
 mod symmetry;
 mod thesis;
 mod thickness;
-mod vector;
 
 pub use counterpart::{Counterparts, counterparts};
 pub use direction::Direction;

@@ -11,7 +11,7 @@ use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;
 
 use crate::RoiError;
-use crate::vector::{Vector, cross, dot, length, minus, plus_scaled, unit};
+use bonemesh_mesh::vector::{Vector, cross, dot, length, minus, plus_scaled, unit_or_zero};
 
 /// Samples for trying directions, for following the best of them, and for the result.
 const SAMPLES: [usize; 3] = [400, 2_000, 20_000];
@@ -158,7 +158,7 @@ impl Body<'_> {
     fn facing(&self, triangle: u32) -> Vector {
         let mesh = self.tree.mesh();
         let [a, b, c] = mesh.corners_mm(mesh.triangles()[triangle as usize]);
-        unit(cross(minus(b, a), minus(c, a)))
+        unit_or_zero(cross(minus(b, a), minus(c, a)))
     }
 
     /// The best of the matches.
@@ -190,7 +190,7 @@ impl Body<'_> {
             let [a, b, shift] = turn;
             let [first, second] = across(guess.normal);
             let tilted = plus_scaled(plus_scaled(guess.normal, a, first), b, second);
-            guess.normal = unit(tilted);
+            guess.normal = unit_or_zero(tilted);
             guess.offset_mm += shift;
             if a.abs().max(b.abs()).max(shift.abs() / self.size_mm) < STILL {
                 break;
@@ -297,7 +297,7 @@ fn samples(mesh: &TriangleMesh, count: usize) -> Option<Vec<Sample>> {
             }
             let [a, b, c] = mesh.corners_mm(*triangle);
             let place = plus_scaled(plus_scaled(a, u, minus(b, a)), v, minus(c, a));
-            let normal = unit(double(triangle));
+            let normal = unit_or_zero(double(triangle));
             samples.push(Sample { place, normal });
         }
     }
@@ -329,7 +329,7 @@ fn across(normal: Vector) -> [Vector; 2] {
     let least = (0..3).min_by(|a, b| normal[*a].abs().total_cmp(&normal[*b].abs()));
     let mut beside = [0.0; 3];
     beside[least.unwrap_or(0)] = 1.0;
-    let first = unit(cross(beside, normal));
+    let first = unit_or_zero(cross(beside, normal));
     [first, cross(normal, first)]
 }
 

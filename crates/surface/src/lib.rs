@@ -90,7 +90,6 @@ mod sorted;
 #[cfg(test)]
 mod synthetic;
 mod tetrahedra;
-mod vector;
 mod volume_matched;
 
 pub use alpha::{AlphaSurface, alpha_boundary, alpha_surface, boundary_surface};

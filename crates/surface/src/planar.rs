@@ -162,7 +162,7 @@ mod tests {
                 prop_assert!(turn > 0.0);
                 for &p in &points {
                     // Whole numbers this small are exact.
-                    use crate::vector::{cross, dot, minus};
+                    use bonemesh_mesh::vector::{cross, dot, minus};
                     let [u, v, w] = [a, b, c].map(|q| minus(at(q), at(p)));
                     prop_assert!(dot(u, cross(v, w)) <= 0.0);
                 }

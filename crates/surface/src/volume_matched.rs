@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use crate::SurfaceError;
 use crate::alpha::points;
-use crate::vector::{cross, dot, minus};
+use bonemesh_mesh::vector::{cross, dot, minus};
 
 /// Radii that differ by less than this part are one: on a lattice many are equal but for rounding.
 const SAME: f64 = 1e-9;

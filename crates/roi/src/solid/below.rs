@@ -6,7 +6,7 @@ use super::fields::{Fields, Inside};
 use super::lattice::{COARSE, Lattice};
 use super::sheet::Lookup;
 use crate::RoiError;
-use crate::vector::Vector;
+use bonemesh_mesh::vector::Vector;
 
 /// What is inside, by depth below the patch.
 pub(super) struct Below<'a> {

@@ -7,7 +7,7 @@ use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{BooleanEngine, Error, MeshGL64, OpType};
 
 use crate::RoiError;
-use crate::vector::{Vector, plus_scaled};
+use bonemesh_mesh::vector::{Vector, plus_scaled};
 
 /// Shorter edges at the cut are collapsed: in a file's 32-bit coordinates they would make triangles meet. By
 /// try: the larger, the more of the front goes with them.

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::space::Space;
-use crate::vector::{Vector, cross, length, minus, plus_scaled};
+use bonemesh_mesh::vector::{Vector, cross, length, minus, plus_scaled};
 
 /// Triangles looked at between two looks at the cancel switch.
 const STRIDE: usize = 1 << 14;

@@ -16,8 +16,8 @@ use super::shells::at_patch;
 use super::space::Space;
 use super::straight::Straight;
 use super::{BESIDE_MM, BULGE};
-use crate::vector::{Vector, cross, dot, minus, plus_scaled};
 use crate::{Direction, RoiError, SolidRequest};
+use bonemesh_mesh::vector::{Vector, cross, dot, minus, plus_scaled};
 
 /// Places of the cutter that are tried.
 const TRIES: u32 = 12;

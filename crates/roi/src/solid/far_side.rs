@@ -10,7 +10,7 @@ use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;
 
 use super::sheet::Sheet;
-use crate::vector::{Vector, cross, dot, length, minus, plus_scaled};
+use bonemesh_mesh::vector::{Vector, cross, dot, length, minus, plus_scaled};
 
 /// The narrowest hollow (mm).
 const PORE_MM: f64 = 3.0;

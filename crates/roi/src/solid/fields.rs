@@ -12,7 +12,7 @@ use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;
 
 use super::lattice::{COARSE, Lattice};
-use crate::vector::Vector;
+use bonemesh_mesh::vector::Vector;
 
 /// How fast values change with place, at least and at most: below a curled patch the nearest place moves
 /// faster than the place that it is nearest to.

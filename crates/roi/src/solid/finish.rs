@@ -6,7 +6,7 @@ use bonemesh_task::Task;
 use super::boolean::Body;
 use super::mend::{Places, mended};
 use crate::RoiError;
-use crate::vector::Vector;
+use bonemesh_mesh::vector::Vector;
 
 /// Rounds of mending.
 const MENDS: usize = 6;

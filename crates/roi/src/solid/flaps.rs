@@ -7,7 +7,7 @@
 use rustc_hash::FxHashMap;
 
 use super::patch::Patch;
-use crate::vector::{Vector, dot, length, plus_scaled, unit};
+use bonemesh_mesh::vector::{Vector, dot, length, plus_scaled, unit_or_zero};
 
 /// Side (mm) of the cells over which it is looked what most of the patch faces; with their neighbours.
 const CELL_MM: f64 = 3.0;
@@ -69,7 +69,7 @@ pub(super) fn drop_flaps(patch: &mut Patch) {
         .collect();
     let is_apart = |t: &u32| {
         let most = around[&cell(near.middle(*t))];
-        most.is_common() && dot(unit(facing(*t)), unit(most.sum)) < ALONG
+        most.is_common() && dot(unit_or_zero(facing(*t)), unit_or_zero(most.sum)) < ALONG
     };
     let apart = patch.own().filter(is_apart).collect();
     spread_from_border(patch, apart);

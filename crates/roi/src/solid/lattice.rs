@@ -3,7 +3,7 @@
 use bonemesh_volume::Affine;
 
 use super::space::Space;
-use crate::vector::{Vector, cross, dot, plus_scaled, unit};
+use bonemesh_mesh::vector::{Vector, cross, dot, plus_scaled, unit_or_zero};
 
 /// Largest and smallest step between nodes (mm).
 const STEPS_MM: [f64; 2] = [1.2, 0.06];
@@ -34,7 +34,7 @@ impl Frame {
         let least = (0..3).min_by(|a, b| third[*a].abs().total_cmp(&third[*b].abs()));
         let mut beside = [0.0; 3];
         beside[least.unwrap_or(0)] = 1.0;
-        let first = unit(cross(beside, third));
+        let first = unit_or_zero(cross(beside, third));
         Self([first, cross(third, first), third])
     }
 

@@ -7,7 +7,7 @@
 use bonemesh_mesh::{Intersection, TriangleMesh};
 use rustc_hash::FxHashSet;
 
-use crate::vector::{Vector, length, minus};
+use bonemesh_mesh::vector::{Vector, length, minus};
 
 /// The longest edge (mm) that is collapsed: less than a scan can tell.
 const LONGEST_MM: f64 = 0.02;

@@ -50,8 +50,8 @@ use self::outline::Outline;
 use self::patch::{Meant, Patch};
 use self::sheet::Sheet;
 use crate::selection::Selection;
-use crate::vector::Vector;
 use crate::{ClearanceMm, Direction, RoiError, ThicknessMm};
+use bonemesh_mesh::vector::Vector;
 
 /// How far (mm) around the selection, and around a plate, is looked at.
 const BESIDE_MM: f64 = 3.0;

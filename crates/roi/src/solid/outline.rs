@@ -19,7 +19,7 @@ use rayon::prelude::*;
 
 use super::crop::Neighbourhood;
 use super::patch::Patch;
-use crate::vector::{Vector, dot, length, minus, plus_scaled, unit};
+use bonemesh_mesh::vector::{Vector, dot, length, minus, plus_scaled, unit_or_zero};
 
 /// Means over neighbours that blur the shares.
 const BLURS: usize = 8;
@@ -220,7 +220,7 @@ fn normals(patch: &Patch, neighbours: &Neighbours) -> Vec<Vector> {
         let part = |sum: Vector, n: f64| sum.map(|component| component / n);
         normals = within.means(&normals, |a, b| plus_scaled(a, 1.0, b), part);
     }
-    normals.into_iter().map(unit).collect()
+    normals.into_iter().map(unit_or_zero).collect()
 }
 
 /// A piece of the outline, across one triangle.
@@ -266,7 +266,7 @@ fn segments(near: &Neighbourhood, share: &[f64], normals: &[Vector]) -> Vec<([u3
             let sum = inner.fold([0.0; 3], |sum, (v, _)| {
                 plus_scaled(sum, 1.0, normals[*v as usize])
             });
-            let normal = unit(sum);
+            let normal = unit_or_zero(sum);
             segments.push((*triangle, Segment { from, to, normal }));
         }
     }

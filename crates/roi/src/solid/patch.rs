@@ -21,7 +21,7 @@ use super::pieces::Pieces;
 use super::space::Space;
 use crate::RoiError;
 use crate::selection::Selection;
-use crate::vector::{Vector, dot, plus_scaled, unit};
+use bonemesh_mesh::vector::{Vector, dot, plus_scaled, unit_or_zero};
 
 /// A hole with less than this part of the patch's area is a gap, and so is one of less than so many mm2.
 const GAP: f64 = 0.02;
@@ -53,7 +53,7 @@ impl Patch {
     /// The mean of the directions into the body, of length 1.
     pub(super) fn inward(&self) -> Vector {
         let own = self.own().map(|t| self.near.triangles[t as usize]);
-        unit(own.fold([0.0; 3], |sum, t| {
+        unit_or_zero(own.fold([0.0; 3], |sum, t| {
             plus_scaled(sum, -1.0, self.near.facing(t))
         }))
     }

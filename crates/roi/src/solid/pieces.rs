@@ -5,7 +5,7 @@ use bonemesh_task::Task;
 
 use super::crop::Neighbourhood;
 use crate::RoiError;
-use crate::vector::{Vector, dot, plus_scaled, unit};
+use bonemesh_mesh::vector::{Vector, dot, plus_scaled, unit_or_zero};
 
 /// A piece with less than this part of the largest one's area is a crumb.
 const CRUMB: f64 = 0.03;
@@ -98,7 +98,7 @@ impl<'a> Pieces<'a> {
 
     fn outward(&self, piece: usize) -> Vector {
         let facings = self.triangles[piece].iter().map(|t| self.facing(*t));
-        unit(facings.fold([0.0; 3], |sum, n| plus_scaled(sum, 1.0, n)))
+        unit_or_zero(facings.fold([0.0; 3], |sum, n| plus_scaled(sum, 1.0, n)))
     }
 
     fn facing(&self, triangle: u32) -> Vector {

@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 
 use super::patch::Patch;
 use super::space::Space;
-use crate::vector::{Vector, length, minus, plus_scaled};
+use bonemesh_mesh::vector::{Vector, length, minus, plus_scaled};
 
 /// Most triangles; beyond, what is left stays as large as it is.
 const MOST: usize = 1_000_000;

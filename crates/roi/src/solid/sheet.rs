@@ -10,7 +10,7 @@ use bonemesh_task::Task;
 use super::crop::{Neighbourhood, numbered};
 use super::outline::Outline;
 use crate::RoiError;
-use crate::vector::{Vector, cross, dot, length, minus, plus_scaled, unit};
+use bonemesh_mesh::vector::{Vector, cross, dot, length, minus, plus_scaled, unit_or_zero};
 
 /// A part of a neighbourhood's surface.
 #[derive(Clone)]
@@ -64,12 +64,12 @@ impl Sheet {
         let mut normals = vec![[0.0; 3]; mesh.vertices_mm().len()];
         for triangle in mesh.triangles() {
             let [a, b, c] = mesh.corners_mm(*triangle);
-            let facing = unit(cross(minus(b, a), minus(c, a)));
+            let facing = unit_or_zero(cross(minus(b, a), minus(c, a)));
             // Weights by angle: the sum tells inside from outside whatever the triangles' shapes.
             for (vertex, [here, next, last]) in
                 triangle.iter().zip([[a, b, c], [b, c, a], [c, a, b]])
             {
-                let [next, last] = [next, last].map(|end| unit(minus(end, here)));
+                let [next, last] = [next, last].map(|end| unit_or_zero(minus(end, here)));
                 let angle = dot(next, last).clamp(-1.0, 1.0).acos();
                 let normal = &mut normals[*vertex as usize];
                 *normal = plus_scaled(*normal, angle, facing);
@@ -125,7 +125,7 @@ impl Lookup<'_> {
         };
         let away = minus(place_mm, nearest.place_mm);
         let away_mm = length(away);
-        let upward = unit(upward);
+        let upward = unit_or_zero(upward);
         let above = dot(away, upward);
         // Beyond the sheet's rim a place is as far outside as it lies beside.
         let is_beyond = parts().all(|(v, weight)| weight == 0.0 || self.sheet.is_rim[v as usize]);

@@ -8,7 +8,7 @@ use bonemesh_task::Task;
 
 use super::boolean::{Body, Source};
 use crate::RoiError;
-use crate::vector::{Vector, cross, dot, minus, plus_scaled};
+use bonemesh_mesh::vector::{Vector, cross, dot, minus, plus_scaled};
 
 /// Which way rays go: as unlike all that lies along the axes as can be.
 const TOWARDS: Vector = [0.481, 0.6123, 0.627_477_258_552_053];

@@ -2,7 +2,7 @@
 
 use bonemesh_mesh::TriangleMesh;
 
-use crate::vector::Vector;
+use bonemesh_mesh::vector::Vector;
 
 /// A box along the axes (mm).
 #[derive(Clone, Copy, Debug)]

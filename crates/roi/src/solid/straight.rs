@@ -10,7 +10,7 @@ use super::fields::Fields;
 use super::lattice::Lattice;
 use super::sheet::Sheet;
 use crate::RoiError;
-use crate::vector::{Vector, cross, minus};
+use bonemesh_mesh::vector::{Vector, cross, minus};
 
 /// Below this cosine a triangle is seen edge on.
 const EDGE_ON: f64 = 1e-3;

@@ -3,7 +3,7 @@
 use rustc_hash::FxHashMap;
 
 use super::Patch;
-use crate::vector::minus;
+use bonemesh_mesh::vector::minus;
 
 /// Which places behind one level of the selection are covered by it.
 #[derive(Debug)]

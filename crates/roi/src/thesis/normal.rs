@@ -5,7 +5,7 @@ use bonemesh_mesh::TriangleMesh;
 use super::Levels;
 use crate::RoiError;
 use crate::selection::Selection;
-use crate::vector::{cross, dot, minus};
+use bonemesh_mesh::vector::{cross, dot, minus};
 
 /// Directions closer than this angle (radians) are one: 32-bit files do not keep a short patch's
 /// directions better than that.

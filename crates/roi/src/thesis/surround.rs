@@ -9,7 +9,7 @@ use rustc_hash::FxHashMap;
 
 use super::Patch;
 use super::levels::is_same_level;
-use crate::vector::minus;
+use bonemesh_mesh::vector::minus;
 
 /// Vertices done between two looks at the cancel switch.
 const STRIDE: usize = 1 << 12;

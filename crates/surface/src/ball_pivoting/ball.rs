@@ -6,7 +6,7 @@ use bonemesh_cloud::{Forest, Near};
 use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;
 
-use crate::vector::{along, cross, dot, minus};
+use bonemesh_mesh::vector::{cross, dot, minus, plus_scaled};
 
 /// How far a point is moved to settle ties, as a part of the radius.
 const MOVED: f64 = 1e-5;
@@ -90,15 +90,15 @@ impl Balls {
             return None;
         }
         // The circumcentre seen from `a`.
-        let to_centre = cross(along([0.0; 3], dot(u, u), v), normal);
-        let to_centre = along(to_centre, dot(v, v), cross(normal, u));
+        let to_centre = cross(plus_scaled([0.0; 3], dot(u, u), v), normal);
+        let to_centre = plus_scaled(to_centre, dot(v, v), cross(normal, u));
         let to_centre = to_centre.map(|x| x / (2.0 * squared));
         let height = self.radius * self.radius - dot(to_centre, to_centre);
         if height.is_nan() || height < 0.0 {
             return None;
         }
-        let middle = along(a, 1.0, to_centre);
-        let centre = along(middle, (height / squared).sqrt(), normal);
+        let middle = plus_scaled(a, 1.0, to_centre);
+        let centre = plus_scaled(middle, (height / squared).sqrt(), normal);
         Some(Touch { centre, corners })
     }
 

@@ -21,8 +21,8 @@ use bonemesh_task::{Cancelled, Task};
 
 use crate::SurfaceError;
 use crate::sorted::sorted;
-use crate::vector::{cross, dot, minus};
 use ball::{Balls, scattered};
+use bonemesh_mesh::vector::{cross, dot, minus};
 use front::Front;
 
 /// The smallest ball of the published study: so many mean distances to the nearest neighbour.
