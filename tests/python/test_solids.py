@@ -214,7 +214,7 @@ def test_the_thickness_under_a_selection(shell, cap):
     assert found["min_mm"] <= found["median_mm"] <= found["max_mm"]
     assert found["median_mm"] == pytest.approx(wall, abs=0.3)
     inside_out = bonemesh.Mesh(shell.vertices, shell.triangles[:, ::-1])
-    assert bonemesh.local_thickness(inside_out, cap) == found
+    assert bonemesh.local_thickness(inside_out, cap) == pytest.approx(found)
     flat = bonemesh.Mesh([[0, 0, 0], [9, 0, 0], [0, 9, 0]], [[0, 1, 2]])
     assert bonemesh.local_thickness(flat, [0, 1, 2]) is None
 
