@@ -44,7 +44,7 @@ pub fn unit(a: Vector) -> Option<Vector> {
     (length > 0.0 && length.is_finite()).then(|| a.map(|component| component / length))
 }
 
-/// [`unit`], or nothing at all where there is no direction.
+/// [`unit()`], or nothing at all where there is no direction.
 #[inline]
 pub fn unit_or_zero(a: Vector) -> Vector {
     unit(a).unwrap_or_default()
