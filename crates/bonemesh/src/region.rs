@@ -235,7 +235,7 @@ fn of_sides(
         for side in sides {
             let (cut, done) = with_mesh_mended(mesh, side, request, is_each, task)?;
             solids.extend(cut);
-            mended = done;
+            mended = mended.most(done);
         }
         let whole = joined(&solids)?;
         if are_apart(&whole.mesh, task)? {
@@ -292,7 +292,13 @@ fn with_mesh_mended(
         }
     };
     let failed = match cut(mesh, selected) {
-        Err(error @ (RoiError::Open | RoiError::NothingCut | RoiError::FacesAway)) => error,
+        Err(
+            error @ (RoiError::Open
+            | RoiError::NothingCut
+            | RoiError::FacesAway
+            | RoiError::NoSound { .. }
+            | RoiError::Cut(_)),
+        ) => error,
         solids => return Ok((solids?, Mended::default())),
     };
     let (whole, mended) = mended(mesh, task)?;

@@ -143,6 +143,17 @@ pub(crate) struct Mended {
     pub(crate) filled_holes: usize,
 }
 
+impl Mended {
+    /// What was done where the same mesh was mended for several sides.
+    pub(crate) fn most(self, other: Self) -> Self {
+        Self {
+            removed_triangles: self.removed_triangles.max(other.removed_triangles),
+            turned_triangles: self.turned_triangles.max(other.turned_triangles),
+            filled_holes: self.filled_holes.max(other.filled_holes),
+        }
+    }
+}
+
 impl SolidReport {
     /// The solid's mesh, and what is said of it.
     pub(crate) fn of(

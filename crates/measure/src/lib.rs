@@ -58,6 +58,9 @@ pub use spread::Spread;
 pub use surfaces::{SurfaceDistances, compare_surfaces};
 pub use volume::{mesh_volume_mm3, tetrahedra_volume_mm3};
 
+/// Most places of a surface that distances are measured at: some gigabytes.
+pub const MOST_SAMPLES: usize = 100_000_000;
+
 /// Why something cannot be measured.
 #[non_exhaustive]
 #[derive(Debug, thiserror::Error)]
@@ -67,7 +70,7 @@ pub enum MeasureError {
     NoSurface(&'static str),
     /// A mesh with no inside.
     #[error(
-        "the {0} is not closed, so it has no volume; fill its holes (`bonemesh repair --holes all`) or leave the residual volume out"
+        "the {0} is not closed, so it has no volume; fill its holes (`bonemesh repair --fill-holes all`) or leave the residual volume out"
     )]
     Open(&'static str),
     /// The boolean gave up.
@@ -75,6 +78,9 @@ pub enum MeasureError {
         "what the two meshes have in common cannot be found ({0}); look for the fault with `bonemesh check`, or leave the residual volume out"
     )]
     Boolean(&'static str),
+    /// More places than memory holds.
+    #[error("{0} places to measure at are too many; give at most {MOST_SAMPLES}")]
+    TooManySamples(usize),
     /// A mesh.
     #[error(transparent)]
     Mesh(#[from] MeshError),

@@ -5,7 +5,7 @@ use bonemesh_task::Task;
 
 use crate::samples::{areas_mm2, places_mm};
 use crate::spread::Spread;
-use crate::{MeasureError, Reference, signed_distances};
+use crate::{MOST_SAMPLES, MeasureError, Reference, signed_distances};
 
 /// Distances between two surfaces.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,13 +30,16 @@ pub struct SurfaceDistances {
 /// distance also at every vertex that a triangle uses.
 ///
 /// # Errors
-/// [`MeasureError::NoSurface`], or the work was cancelled.
+/// [`MeasureError::NoSurface`], [`MeasureError::TooManySamples`], or the work was cancelled.
 pub fn compare_surfaces(
     mesh: &TriangleMesh,
     reference: &TriangleMesh,
     samples: usize,
     task: &Task,
 ) -> Result<SurfaceDistances, MeasureError> {
+    if samples > MOST_SAMPLES {
+        return Err(MeasureError::TooManySamples(samples));
+    }
     let mesh = mesh.merged(task)?.compacted();
     let reference = reference.merged(task)?.compacted();
     let to = one_way(&mesh, &reference, "mesh", samples, task)?;

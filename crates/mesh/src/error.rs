@@ -94,7 +94,9 @@ pub enum MeshError {
         path: PathBuf,
     },
     /// Fewer triangles asked for than enclose a volume.
-    #[error("{triangles} triangles enclose nothing; ask for at least 4")]
+    #[error(
+        "fewer than 4 triangles enclose nothing, so {triangles} cannot be asked for; ask for at least 4"
+    )]
     TooFewTriangles {
         /// How many were asked for.
         triangles: usize,

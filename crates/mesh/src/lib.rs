@@ -71,6 +71,7 @@ pub mod vector;
 
 pub use clean::{Cleaned, clean};
 pub use decimate::{Decimated, Decimation, decimate};
+pub use distance::least_distance;
 pub use error::MeshError;
 pub use holes::{HoleLeft, HoleLimits, HoleReason, HolesFilled, fill_holes};
 pub use intersections::{Intersection, Intersections, find_intersections};

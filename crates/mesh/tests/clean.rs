@@ -95,6 +95,18 @@ fn of_triangles_given_twice_one_stays() {
 }
 
 #[test]
+fn needles_given_twice_go_too() {
+    for doubled in [12, 13, 14] {
+        let broken = box_with_needles(&[4.0]);
+        let mut triangles = broken.triangles().to_vec();
+        triangles.push(triangles[doubled - 2]);
+        let (mended, gone) = cleaned(&mesh(broken.vertices_mm().to_vec(), triangles));
+        assert_eq!(gone, [1, 1]);
+        assert_sound(&mended, 512.0);
+    }
+}
+
+#[test]
 fn a_surface_given_for_both_sides_keeps_one() {
     // The whole box, and the box without its top.
     for count in [12, 10] {

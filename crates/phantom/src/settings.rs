@@ -5,6 +5,9 @@ use bonemesh_volume::{Affine, Geometry};
 use crate::vector::{Vec3, add, scale, sub};
 use crate::{Orientation, PhantomError};
 
+/// Voxels of more than that do not fit the memory of usual computers.
+const MOST_VOXELS: f64 = 2e9;
+
 /// Grid, blur and noise of a scan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScanSettings {
@@ -121,6 +124,15 @@ impl ScanSettings {
                     allowed,
                 });
             }
+        }
+        let voxels = [self.columns, self.rows, self.slices].map(|n| n as f64);
+        let voxels: f64 = voxels.iter().product();
+        if voxels > MOST_VOXELS {
+            return Err(PhantomError::Setting {
+                setting: "number of voxels",
+                value: voxels,
+                allowed: "at most 2000000000: take larger pixels or thicker slices",
+            });
         }
         Ok(())
     }

@@ -120,7 +120,7 @@ pub enum RoiError {
     NothingCut,
     /// What is left touches itself, whatever is tried.
     #[error(
-        "the solid would touch itself after {tries} tries; check the surface near the selection (bonemesh check), select a little more or less, or move a mesh that lies metres away from the origin nearer to it"
+        "the solid would touch itself after {tries} tries; check the surface near the selection (bonemesh check; bonemesh repair mends what can be), select a little more or less, or move a mesh that lies metres away from the origin nearer to it"
     )]
     NoSound {
         /// How often it was tried.
@@ -128,7 +128,7 @@ pub enum RoiError {
     },
     /// The cut failed.
     #[error(
-        "the solid cannot be cut out ({0}); check the surface near the selection (bonemesh check)"
+        "the solid cannot be cut out ({0}); check the surface near the selection (bonemesh check; bonemesh repair mends what can be)"
     )]
     Cut(&'static str),
     /// Nothing lies where the mirror shows the selection.

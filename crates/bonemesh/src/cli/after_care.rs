@@ -3,7 +3,7 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use bonemesh_mesh::{Decimation, Islands, read_mesh};
+use bonemesh_mesh::{Decimation, Islands, check_topology, read_mesh};
 use bonemesh_task::{Task, pool};
 use clap::Args;
 
@@ -83,17 +83,14 @@ pub(super) fn run(arguments: &Repair, task: &Task) -> Result<Answer, Error> {
     arguments
         .file
         .write(&arguments.output, &mesh, &report, task)?;
-    let (vertices, triangles) = (mesh.vertices_mm().len(), mesh.triangles().len());
-    let text = format!(
-        "{}\n  {}, {}\n{}  {:.2} s\n",
-        arguments.output.display(),
-        text::counted(triangles, "triangle", "triangles"),
-        text::counted(vertices, "vertex", "vertices"),
-        text::after_care(&report),
-        report.seconds
-    );
+    let topology = check_topology(&mesh, task)?;
+    let text = text::repaired(&report, &topology, &arguments.output);
     Ok(Answer::new(&report, text)
-        .with("vertices", vertices)
-        .with("triangles", triangles)
+        .with("vertices", topology.vertices)
+        .with("triangles", topology.triangles)
+        .with("watertight", topology.watertight)
+        .with("manifold", topology.manifold)
+        .with("components", topology.components)
+        .with("volume_mm3", topology.volume_mm3)
         .with("output", arguments.output.to_string_lossy()))
 }

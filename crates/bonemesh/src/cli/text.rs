@@ -3,6 +3,8 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use bonemesh_mesh::Topology;
+
 use crate::mirror::PlaneReport;
 use crate::region_report::{RegionReport, SolidReport};
 use crate::report::{RenderReport, Seconds};
@@ -142,6 +144,21 @@ fn seconds(seconds: &Seconds, after_care_s: f64) -> String {
 /// Holes left that the text names; the report has more of them.
 const HOLES_SHOWN: usize = 5;
 
+/// `repair`: what was done, and what the mesh is now.
+pub(super) fn repaired(report: &AfterCareReport, topology: &Topology, file: &Path) -> String {
+    format!(
+        "{}\n  {}, {}, {}{}\n  {}\n{}  {:.2} s\n",
+        file.display(),
+        counted(topology.triangles, "triangle", "triangles"),
+        counted(topology.vertices, "vertex", "vertices"),
+        components(topology.components, topology.cavities),
+        enclosed(topology.watertight, topology.volume_mm3),
+        verdict(topology.watertight, topology.manifold),
+        after_care(report),
+        report.seconds
+    )
+}
+
 /// What was done to a finished mesh, a line each.
 pub(super) fn after_care(report: &AfterCareReport) -> String {
     let mut text = String::new();
@@ -172,19 +189,20 @@ pub(super) fn after_care(report: &AfterCareReport) -> String {
     }
     let parts = [
         (
-            "islands taken away",
+            ["island", "islands"],
             report.removed_islands,
             report.removed_islands_mm3,
         ),
         (
-            "cavities taken away",
+            ["cavity", "cavities"],
             report.removed_cavities,
             report.removed_cavities_mm3,
         ),
     ];
-    for (name, count, mm3) in parts.into_iter().filter(|(_, count, _)| *count > 0) {
+    for ([one, many], count, mm3) in parts.into_iter().filter(|(_, count, _)| *count > 0) {
         // Writing to a String cannot fail.
-        let _ = writeln!(text, "  {count} {name}, {}", volume(mm3));
+        let count = counted(count, one, many);
+        let _ = writeln!(text, "  {count} taken away, {}", volume(mm3));
     }
     if let (Some(mm), Some(back)) = (report.largest_move_mm, report.put_back_vertices) {
         let _ = writeln!(
@@ -195,7 +213,10 @@ pub(super) fn after_care(report: &AfterCareReport) -> String {
     if let (Some(count), Some(held)) = (report.removed_triangles, report.held_vertices) {
         let held = match held {
             0 => String::new(),
-            _ => format!(", {held} vertices left as they were"),
+            _ => format!(
+                ", {} left as they were (a smaller bound may take more away there)",
+                counted(held, "vertex", "vertices")
+            ),
         };
         let _ = writeln!(
             text,
@@ -231,7 +252,7 @@ fn volume(mm3: f64) -> String {
 }
 
 /// `count` with its noun.
-pub(super) fn counted(count: usize, one: &str, many: &str) -> String {
+fn counted(count: usize, one: &str, many: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }
 
@@ -283,6 +304,15 @@ pub(super) fn region(report: &RegionReport, file: &Path) -> String {
     )
 }
 
+/// How near a plate comes to the bone.
+fn near(gap_mm: f64) -> String {
+    if gap_mm > 0.0 {
+        format!("  comes as near to the bone as {gap_mm:.2} mm\n")
+    } else {
+        "  touches or enters the bone somewhere; a larger clearance keeps it off\n".to_owned()
+    }
+}
+
 /// What was done to the selection or the mesh before a solid was cut, a line each.
 fn solid_notes(solid: &SolidReport) -> String {
     let counts = [
@@ -317,7 +347,7 @@ fn solid_notes(solid: &SolidReport) -> String {
     let mirror = solid.mirror.iter();
     let lines: Vec<String> = counts
         .map(|&(count, [one, many], what)| format!("  {} {what}\n", counted(count, one, many)))
-        .chain(gap.map(|gap| format!("  comes as near to the bone as {gap:.2} mm\n")))
+        .chain(gap.map(|gap| near(*gap)))
         .chain(mirror.map(|m| format!("  taken from the other side of {}\n", plane(m))))
         .collect();
     lines.concat()

@@ -1,8 +1,9 @@
 //! Triangles that are no part of a surface, taken out.
 //!
 //! 1. Triangles with two equal corners go: their other two edges are one.
-//! 2. `needles`: a triangle without area lies along an edge; its neighbour across that edge is divided instead.
-//! 3. `doubled`: of equal triangles one stays, or none where they are a wall without thickness.
+//! 2. `doubled`: of equal triangles one stays, or none where they are a wall without thickness.
+//! 3. `needles`: a triangle without area lies along an edge; its neighbour across that edge is divided instead.
+//!    What comes of that may be there already, so 2 and 3 take turns until nothing changes.
 
 mod doubled;
 mod needles;
@@ -23,7 +24,7 @@ pub struct Cleaned {
     pub doubled: usize,
 }
 
-/// Takes out triangles without area and triangles that lie on others, without opening the surface.
+/// Takes out triangles without area and triangles that lie on others, without opening a surface that is closed.
 ///
 /// A triangle without area whose corners differ is a fold along its longest edge: it goes, and the neighbour
 /// across that edge is divided at its middle corner. Of triangles with the same corners one stays; where two
@@ -42,13 +43,21 @@ pub fn clean(mesh: &TriangleMesh, task: &Task) -> Result<Cleaned, MeshError> {
     task.begin("cleaning", given);
     let mut triangles = mesh.triangles().to_vec();
     triangles.retain(|triangle| !is_collapsed(*triangle));
-    let collapsed = given - triangles.len();
-    let needles = needles::divide_neighbours(mesh.vertices_mm(), &mut triangles, task)?;
-    let before = triangles.len();
-    doubled::take_out(&mut triangles, task)?;
+    let mut degenerate = given - triangles.len();
+    let mut doubled = 0;
+    loop {
+        let before = triangles.len();
+        doubled::take_out(&mut triangles, task)?;
+        doubled += before - triangles.len();
+        let needles = needles::divide_neighbours(mesh.vertices_mm(), &mut triangles, task)?;
+        degenerate += needles;
+        if needles == 0 {
+            break;
+        }
+    }
     Ok(Cleaned {
-        doubled: before - triangles.len(),
-        degenerate: collapsed + needles,
+        doubled,
+        degenerate,
         mesh: TriangleMesh::new(mesh.vertices_mm().to_vec(), triangles)?,
     })
 }

@@ -2,7 +2,7 @@
 //!
 //! 1. `Tips::of`: the places from which rays start, sorted into cells across x.
 //! 2. `turns`: every triangle looks for the rays that pass it.
-//! 3. `find_parents`: a ray crosses what encloses its part once more outward than inward.
+//! 3. `find_parents`: a ray crosses what encloses its part once more one way than the other.
 
 use bonemesh_task::{Cancelled, Task};
 use rayon::prelude::*;

@@ -25,8 +25,8 @@ pub(super) struct Part {
     pub(super) volume_mm3: f64,
     pub(super) triangles: usize,
     pub(super) is_closed: bool,
-    /// Its vertex with the highest x, of those that are no other part's as far as there are any; a ray from
-    /// there along x tells what the part lies in.
+    /// Its vertex with the highest x, of those that are no other part's; else the middle of its first triangle.
+    /// A ray from there along x tells what the part lies in.
     pub(super) tip: Vector,
     /// The innermost closed part that it lies in.
     pub(super) parent: Option<u32>,
@@ -118,10 +118,14 @@ struct Measure {
     low: Vector,
     high: Vector,
     tip: Vector,
-    /// The tip of vertices that are no other part's.
-    own_tip: Vector,
+    /// The middle of the first triangle.
+    middle: Option<Vector>,
     triangles: usize,
     rim: u64,
+}
+
+fn middle([a, b, c]: [Vector; 3]) -> Vector {
+    [0, 1, 2].map(|axis| (a[axis] + b[axis] + c[axis]) / 3.0)
 }
 
 /// The one with the higher x, of equals the first.
@@ -137,7 +141,7 @@ impl Default for Measure {
             low: [f64::INFINITY; 3],
             high: [f64::NEG_INFINITY; 3],
             tip: [f64::NEG_INFINITY; 3],
-            own_tip: [f64::NEG_INFINITY; 3],
+            middle: None,
             triangles: 0,
             rim: 0,
         }
@@ -161,9 +165,10 @@ fn measures(
         if let Some((_, measure)) = found.last_mut() {
             let corners = mesh.corners_mm(*triangle);
             measure.see(corners, origin);
+            measure.middle.get_or_insert_with(|| middle(corners));
             let is_own = |vertex: u32| is_shared.get(vertex as usize).is_none_or(|shared| !shared);
             for (_, corner) in triangle.iter().zip(corners).filter(|(v, _)| is_own(**v)) {
-                measure.own_tip = further(measure.own_tip, corner);
+                measure.tip = further(measure.tip, corner);
             }
             measure.rim = measure.rim.wrapping_add(rim(*triangle));
         }
@@ -174,7 +179,7 @@ fn measures(
 impl Measure {
     fn see(&mut self, corners: [Vector; 3], origin: Vector) {
         for corner in corners {
-            self.reach(corner, corner, corner);
+            self.reach(corner, corner);
         }
         let [a, b, c] = corners.map(|corner| minus(corner, origin));
         self.volume6 += dot(a, cross(b, c));
@@ -183,18 +188,18 @@ impl Measure {
     }
 
     fn add(&mut self, other: &Self) {
-        self.reach(other.low, other.high, other.tip);
-        self.own_tip = further(self.own_tip, other.own_tip);
+        self.reach(other.low, other.high);
+        self.tip = further(self.tip, other.tip);
+        self.middle = self.middle.or(other.middle);
         self.volume6 += other.volume6;
         self.area2 = plus_scaled(self.area2, 1.0, other.area2);
         self.triangles += other.triangles;
         self.rim = self.rim.wrapping_add(other.rim);
     }
 
-    fn reach(&mut self, low: Vector, high: Vector, tip: Vector) {
+    fn reach(&mut self, low: Vector, high: Vector) {
         self.low = [0, 1, 2].map(|axis| self.low[axis].min(low[axis]));
         self.high = [0, 1, 2].map(|axis| self.high[axis].max(high[axis]));
-        self.tip = further(self.tip, tip);
     }
 
     fn part(&self, origin: Vector) -> Part {
@@ -203,10 +208,9 @@ impl Measure {
             volume_mm3: (self.volume6 - dot(self.area2, minus(middle, origin))) / 6.0,
             triangles: self.triangles,
             is_closed: self.rim == 0,
-            tip: if self.own_tip[0].is_finite() {
-                self.own_tip
-            } else {
-                self.tip
+            tip: match self.middle {
+                Some(middle) if self.tip[0] == f64::NEG_INFINITY => middle,
+                _ => self.tip,
             },
             parent: None,
             is_cavity: false,

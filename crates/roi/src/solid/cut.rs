@@ -11,8 +11,9 @@ use super::cutter::Cutter;
 use super::far_side::end_at_far_side;
 use super::finish::{Finished, finished};
 use super::lattice::{Frame, Lattice, affordable_mm};
+use super::plate::is_above;
 use super::sheet::Sheet;
-use super::shells::at_patch;
+use super::shells::{at_patch, without_crumbs};
 use super::space::Space;
 use super::straight::Straight;
 use super::{BESIDE_MM, BULGE};
@@ -94,8 +95,9 @@ impl Cut<'_> {
             let cut = stock.common(&cutter.moved(shift_mm(attempt)), attempt, task)?;
             let cut = match direction {
                 Direction::Normal | Direction::Along(_) => at_patch(cut, &is_front, task)?,
-                // Behind hollows it does not hang together with the patch; of a plate all is meant.
-                Direction::Through | Direction::Outward => cut.0,
+                // Behind hollows it does not hang together with the patch.
+                Direction::Through => cut.0,
+                Direction::Outward => self.on_patch(cut.0, task)?,
             };
             if let Finished::Sound(mesh) = finished(cut, bone.vertices_mm(), task)? {
                 return Ok(mesh);
@@ -120,6 +122,16 @@ impl Cut<'_> {
         let whole = is_plate.then(|| Sheet::whole(bone.clone()));
         let cutter = self.cutter(whole.as_ref(), task)?;
         cutter.bodies(lattice, task)
+    }
+
+    /// Those of a plate's bodies that lie on the patch, without crumbs.
+    fn on_patch(&self, cut: Body, task: &Task) -> Result<Body, RoiError> {
+        let sheet = self.sheet.lookup(task)?;
+        let depth_mm = |place| {
+            let seen = sheet.see(place, f64::INFINITY);
+            seen.map_or(0.0, |seen| seen.depth_mm)
+        };
+        without_crumbs(cut, |places| is_above(places, depth_mm), task)
     }
 
     /// How far (mm) beyond what is cut the bone is closed with lids.

@@ -8,7 +8,8 @@
 //! 6. [`cutter`]: the body of all places that belong to the patch, [`below`] it or [`straight`] behind it, as
 //!    the common part of two whose [`fields`] are known on the nodes of a [`lattice`].
 //! 7. [`boolean`]: what bone and cutter have in common; [`shells`]: what of it lies at the patch.
-//! 8. [`finish`]: checked as a file would hold it. Where 32-bit coordinates make triangles meet, slivers are
+//! 8. [`plate`]: what lies on the bone instead, and keeps its clearance.
+//! 9. [`finish`]: checked as a file would hold it. Where 32-bit coordinates make triangles meet, slivers are
 //!    collapsed ([`mend`]) or, if that is not enough, the cutter is moved by microns and cuts again.
 
 mod below;
@@ -20,12 +21,12 @@ mod far_side;
 mod fields;
 mod finish;
 mod flaps;
-mod gap;
 mod lattice;
 mod mend;
 mod outline;
 mod patch;
 mod pieces;
+mod plate;
 mod refine;
 mod sheet;
 mod shells;
@@ -35,7 +36,6 @@ mod straight;
 use bonemesh_mesh::TriangleMesh;
 use bonemesh_task::Task;
 use rayon::prelude::*;
-use rustc_hash::FxHashSet;
 
 pub(crate) use self::crop::Neighbourhood;
 pub(crate) use self::cut::is_inside_out;
@@ -44,10 +44,10 @@ pub(crate) use self::space::Space;
 pub(crate) use self::straight::covered;
 
 use self::cut::Cut;
-use self::gap::least_gap_mm;
 use self::lattice::{affordable_mm, step_mm};
 use self::outline::Outline;
 use self::patch::{Meant, Patch};
+use self::plate::plate;
 use self::sheet::Sheet;
 use crate::selection::Selection;
 use crate::{ClearanceMm, Direction, RoiError, ThicknessMm};
@@ -64,10 +64,6 @@ const EDGES_IN_WIDTH: f64 = 6.0;
 const EDGES_BESIDE: f64 = 6.0;
 /// Largest step (mm) of a plate, or its clearance if that is more: else it would pass over ridges of the bone.
 const PLATE_STEP_MM: f64 = 0.5;
-/// How often a plate is cut that comes nearer to the bone than its clearance.
-const PLATE_TRIES: u32 = 4;
-/// How much nearer (mm) counts as no nearer: less than any printer can tell.
-const GAP_LEEWAY_MM: f64 = 0.01;
 /// Least thickness, and least distance from the outline to the middle of a patch, in steps.
 const LEAST_STEPS: f64 = 1.5;
 
@@ -282,32 +278,6 @@ fn cut_out(
         closed: 0,
         gap_mm,
     })
-}
-
-/// The plate that comes nowhere nearer to the bone than its clearance, as far as a few tries find one, and how
-/// near it comes if nearer.
-///
-/// Between the nodes of its lattice a plate comes nearer to ridges; so much farther off it is cut again.
-fn plate(
-    mut cut: Cut<'_>,
-    mesh: &TriangleMesh,
-    is_patch: &FxHashSet<[u32; 3]>,
-    task: &Task,
-) -> Result<(TriangleMesh, Option<f64>), RoiError> {
-    let clearance_mm = cut.request.clearance.mm();
-    for _ in 1..PLATE_TRIES {
-        let plate = cut.clone().sound(mesh, is_patch, task)?;
-        let gap_mm = least_gap_mm(&plate, mesh, clearance_mm, task)?;
-        let lacking_mm = gap_mm.map_or(0.0, |gap_mm| clearance_mm - gap_mm);
-        if lacking_mm < GAP_LEEWAY_MM {
-            return Ok((plate, None));
-        }
-        cut.margin_mm += lacking_mm;
-    }
-    let plate = cut.sound(mesh, is_patch, task)?;
-    let gap_mm = least_gap_mm(&plate, mesh, clearance_mm, task)?;
-    let is_nearer = |gap_mm: &f64| clearance_mm - gap_mm >= GAP_LEEWAY_MM;
-    Ok((plate, gap_mm.filter(is_nearer)))
 }
 
 /// How far apart the nodes are for a patch of that box and area, where so thin a cut can be told at all.

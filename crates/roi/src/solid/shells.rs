@@ -15,6 +15,9 @@ const TOWARDS: Vector = [0.481, 0.6123, 0.627_477_258_552_053];
 /// What is passed over after a hit (mm), so that it is not met again.
 const AFTER_HIT_MM: f64 = 1e-6;
 
+/// Bodies of less than this (mm3) are crumbs: no printer makes them, and nobody meant them.
+const CRUMB_MM3: f64 = 1.0;
+
 /// Keeps the bodies that have a triangle of the patch. `is_front`: by the triangles of the bone, which of them
 /// are the patch's.
 pub(super) fn at_patch(
@@ -32,6 +35,38 @@ pub(super) fn at_patch(
     }
     let triangles = cut.triangles.into_iter().zip(&shells.of_triangles);
     let kept = triangles.filter(|(_, shell)| is_kept[bodies.lowest(**shell) as usize]);
+    Ok(Body {
+        vertices_mm: cut.vertices_mm,
+        triangles: kept.map(|(triangle, _)| triangle).collect(),
+    })
+}
+
+/// Keeps the bodies of at least [`CRUMB_MM3`] whose places are `meant`, and of their hollows those as large; of
+/// crumbs alone the largest.
+pub(super) fn without_crumbs(
+    cut: Body,
+    meant: impl Fn(&[Vector]) -> bool,
+    task: &Task,
+) -> Result<Body, RoiError> {
+    let shells = Shells::of(&cut);
+    let mut bodies = shells.bodies(&cut, task)?;
+    let largest = shells.volumes.iter().copied().fold(0.0, f64::max);
+    let least6 = largest.min(6.0 * CRUMB_MM3);
+    let mut places = vec![Vec::new(); shells.volumes.len()];
+    for (shell, triangle) in shells.of_triangles.iter().zip(&cut.triangles) {
+        places[*shell as usize].extend(triangle.map(|v| cut.vertices_mm[v as usize]));
+    }
+    let is_meant = |shell: usize| shells.volumes[shell] > 0.0 && meant(&places[shell]);
+    let is_large = |shell: usize| shells.volumes[shell].abs() >= least6;
+    let mut is_body = vec![false; places.len()];
+    for shell in (0..places.len()).filter(|shell| is_large(*shell) && is_meant(*shell)) {
+        is_body[bodies.lowest(shell as u32) as usize] = true;
+    }
+    let is_kept: Vec<bool> = (0..places.len())
+        .map(|shell| is_large(shell) && is_body[bodies.lowest(shell as u32) as usize])
+        .collect();
+    let triangles = cut.triangles.into_iter().zip(&shells.of_triangles);
+    let kept = triangles.filter(|(_, shell)| is_kept[**shell as usize]);
     Ok(Body {
         vertices_mm: cut.vertices_mm,
         triangles: kept.map(|(triangle, _)| triangle).collect(),

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use bonemesh_mesh::{TriangleMesh, TriangleTree};
+use bonemesh_mesh::{TriangleMesh, TriangleTree, check_topology, least_distance};
 use bonemesh_roi::{ClearanceMm, Direction, RoiError, SolidRequest, select_solid};
 use bonemesh_task::Task;
 
@@ -199,6 +199,44 @@ fn a_plate_keeps_its_clearance_from_ridges_narrower_than_its_steps() {
         .fold(0.5, f64::min);
     assert!(least > 0.48, "{least} mm");
     assert_eq!(plate.gap_mm, None);
+}
+
+#[test]
+fn a_plate_without_clearance_stays_outside_of_the_bone() {
+    let rough = body([12.0, 12.0, 4.0], |[x, y, z]| {
+        let height = 2.0 + 0.3 * (1.3 * x).sin() * (1.7 * y).cos();
+        (11.0 - x.abs())
+            .min(11.0 - y.abs())
+            .min((height - z).min(z + 2.0))
+    });
+    let patch = selected(&rough, |[x, y, z]| z > 1.0 && x.hypot(y) < 8.0);
+    for clearance_mm in [0.0, 0.05, 0.2] {
+        let request = SolidRequest {
+            clearance: ClearanceMm::new(clearance_mm).unwrap(),
+            ..towards(Direction::Outward, 3.0)
+        };
+        let plate = sound(&rough, &patch, &request);
+        assert_eq!(plate.gap_mm, None, "{clearance_mm}");
+        let tree = TriangleTree::new(&rough, &Task::default()).unwrap();
+        let gap = least_distance(&plate.mesh, &tree, 1.0, &Task::default()).unwrap();
+        assert!(gap.unwrap() > 0.95 * clearance_mm, "{gap:?}");
+        assert!(gap.unwrap() < clearance_mm + 0.3, "{gap:?}");
+    }
+}
+
+#[test]
+fn a_plate_on_thin_bone_is_one_body_on_its_own_side() {
+    for thickness_mm in [0.3, 0.6] {
+        let slab = body([12.0, 12.0, 3.0], |[x, y, z]| {
+            let across = (11.0 - x.abs()).min(11.0 - y.abs());
+            across.min((1.0 - z).min(z - 1.0 + thickness_mm))
+        });
+        let patch = selected(&slab, |[x, y, z]| z > 0.95 && x.hypot(y) < 8.0);
+        let plate = sound(&slab, &patch, &towards(Direction::Outward, 3.0));
+        assert!(lowest(&plate.mesh) > 1.1, "{}", lowest(&plate.mesh));
+        let topology = check_topology(&plate.mesh, &Task::default()).unwrap();
+        assert_eq!(topology.components, 1);
+    }
 }
 
 #[test]
