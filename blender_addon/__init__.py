@@ -10,6 +10,7 @@ def parts() -> tuple[ModuleType, ...]:
     """What is registered, in this order, where the compiled library loads."""
     from . import (
         directions,
+        edges,
         export_panel,
         help_panel,
         operators,
@@ -38,6 +39,7 @@ def parts() -> tuple[ModuleType, ...]:
         export_panel,
         help_panel,
         directions,
+        edges,
     )
 
 

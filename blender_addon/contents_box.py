@@ -10,7 +10,7 @@ from .messages import one_line
 from .operators.choose_series import BONEMESH_OT_choose_series
 from .operators.scan_ct_directory import BONEMESH_OT_scan_ct_directory
 from .operators.stop_scan import BONEMESH_OT_stop_scan
-from .report_box import MOST_ROWS, draw_left_out, draw_report, draw_rest
+from .report_box import MOST_ROWS, draw_report, draw_rest
 from .scans import FolderScan
 from .text import draw_text
 
@@ -60,10 +60,7 @@ def draw_contents(
     head.operator(BONEMESH_OT_scan_ct_directory.bl_idname, text="", icon="FILE_REFRESH")
     draw_series(column, context, contents, series)
     draw_advice(column, context, contents, series)
-    if series is not None:
-        column.separator(factor=0.5)
-        draw_report(column, context, series)
-    draw_left_out(column, context, scan, contents)
+    draw_report(column, context, scan, series)
 
 
 def draw_series(

@@ -4,6 +4,7 @@
 import bpy
 from bpy.types import Context, Panel, UILayout
 
+from . import suggestions
 from .operators.choose_mesh_directory import BONEMESH_OT_choose_mesh_directory
 from .operators.export_mesh import BONEMESH_OT_export_mesh
 from .panels import Part
@@ -24,7 +25,7 @@ class BONEMESH_PT_export(Part, Panel):
         column.prop(properties, "as_placed")
         name = "" if active is None else active.name
         column.prop(properties, "file_name", placeholder=name)
-        if not context.scene.bonemesh.mesh_directory.strip():
+        if not suggestions.filled(context).mesh_directory.strip():
             layout.operator(BONEMESH_OT_choose_mesh_directory.bl_idname)
         layout.operator(BONEMESH_OT_export_mesh.bl_idname, icon="EXPORT")
 

@@ -3,7 +3,7 @@
 
 from typing import Any
 
-from . import steps
+from . import steps, suggestions
 from .last_messages import messages
 from .operators.start_lasso import BONEMESH_OT_start_lasso
 from .scene import SOURCE
@@ -15,7 +15,7 @@ ICONS = {"INFO": "INFO", "WARNING": "ERROR", "ERROR": "CANCEL"}
 def draw(layout: Any, context: Any) -> None:
     """Draws the box."""
     box, now = layout.box().column(align=True), seen(context)
-    text = steps.next_step(context.scene.bonemesh, now)
+    text = steps.next_step(suggestions.filled(context), now)
     draw_text(box, context, text, icon="FORWARD")
     if now.active == "bone" and not (now.is_edited and now.selected):
         box.operator(BONEMESH_OT_start_lasso.bl_idname, icon="RESTRICT_SELECT_OFF")

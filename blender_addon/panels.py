@@ -1,17 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The tab "Segment CT" in the sidebar of the 3D view."""
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import bpy
 from bpy.types import Context, Panel, UILayout
 
 from . import (
     contents_box,
+    files_box,
     job,
     memory_box,
     mesh_box,
     next_step_box,
+    suggestions,
     threshold_box,
 )
 from .inputs import uses_edge_points
@@ -57,29 +59,47 @@ class BONEMESH_PT_segment_ct(Panel):
         column.operator(BONEMESH_OT_choose_ct_directory.bl_idname)
         column.prop(properties, "ct_directory", text="")
         contents_box.draw(column, context)
-        column.prop(properties, "hu_threshold", slider=True)
         threshold_box.draw(column, context)
-        column.prop(properties, "cut_thickness")
+        filled = suggestions.filled(context)
+        draw_surface(layout.column(), context, filled)
+        draw_region(layout.column(), context, filled)
+        draw_check(layout.column(), context)
 
-        column = layout.column()
-        column.label(text="Mesh Filename")
-        column.prop(properties, "mesh_name", text="")
-        column.operator(BONEMESH_OT_choose_mesh_directory.bl_idname)
-        column.prop(properties, "mesh_directory", text="")
-        memory_box.draw(column, context)
-        column.operator(BONEMESH_OT_render_surface_mesh.bl_idname)
-        row = column.row(align=True)
-        row.operator(BONEMESH_OT_render_again.bl_idname)
-        row.operator(BONEMESH_OT_read_sidecar.bl_idname, text="", icon="FILE_FOLDER")
 
-        column = layout.column()
-        column.label(text="Segmented Mesh Filename")
-        column.prop(properties, "roi_name", text="")
-        column.operator(BONEMESH_OT_select_roi.bl_idname)
+def draw_surface(column: UILayout, context: Context, filled: Any) -> None:
+    """Draws what the whole mesh is called, where it is saved, and the button that makes it."""
+    properties = context.scene.bonemesh
+    column.label(text="Mesh Filename")
+    column.prop(properties, "mesh_name", text="", placeholder=filled.mesh_name)
+    column.operator(BONEMESH_OT_choose_mesh_directory.bl_idname)
+    column.prop(
+        properties, "mesh_directory", text="", placeholder=filled.mesh_directory
+    )
+    files_box.draw(column, context, filled.mesh_directory, filled.mesh_name)
+    memory_box.draw(column, context)
+    column.operator(BONEMESH_OT_render_surface_mesh.bl_idname)
+    row = column.row(align=True)
+    row.operator(BONEMESH_OT_render_again.bl_idname)
+    row.operator(BONEMESH_OT_read_sidecar.bl_idname, text="", icon="FILE_FOLDER")
 
-        column = layout.column()
-        column.operator(BONEMESH_OT_check_mesh.bl_idname)
-        mesh_box.draw(column, context)
+
+def draw_region(column: UILayout, context: Context, filled: Any) -> None:
+    """Draws how thick the region is, what it is called, and the button that cuts it out."""
+    properties = context.scene.bonemesh
+    column.prop(properties, "cut_thickness")
+    column.label(text="Segmented Mesh Filename")
+    column.prop(properties, "roi_name", text="", placeholder=filled.roi_name)
+    files_box.draw(column, context, filled.mesh_directory, filled.roi_name)
+    column.operator(BONEMESH_OT_select_roi.bl_idname)
+
+
+def draw_check(column: UILayout, context: Context) -> None:
+    """Draws the button with the name of what it looks at, and what was found."""
+    active = context.active_object
+    is_mesh = active is not None and active.type == "MESH"
+    text = f"Check Mesh: {active.name}" if is_mesh else "Check Mesh"
+    column.operator(BONEMESH_OT_check_mesh.bl_idname, text=text)
+    mesh_box.draw(column, context)
 
 
 def draw_progress(layout: UILayout, running: job.Job) -> None:

@@ -134,7 +134,7 @@ class BonemeshProperties(PropertyGroup):
     )
     mesh_directory: StringProperty(
         name="Mesh Folder",
-        description="Folder in which the meshes are saved as STL",
+        description="Folder in which the meshes are saved as STL; empty takes the one shown in grey",
         subtype="DIR_PATH",
     )
     hu_threshold: IntProperty(
@@ -161,11 +161,11 @@ class BonemeshProperties(PropertyGroup):
     )
     mesh_name: StringProperty(
         name="Mesh Filename",
-        description="Name of the surface mesh and of its STL file",
+        description="Name of the surface mesh and of its STL file; empty takes the one shown in grey",
     )
     roi_name: StringProperty(
         name="Segmented Mesh Filename",
-        description="Name of the region of interest and of its STL file",
+        description="Name of the region of interest and of its STL file; empty takes the one shown in grey",
     )
     sigma: FloatProperty(
         name="Edge Smoothing",
@@ -299,6 +299,10 @@ class BonemeshProperties(PropertyGroup):
 class BonemeshFolds(PropertyGroup):
     """What is folded out in the panel; not in the scene, where a click would be a step to undo."""
 
+    show_histogram: BoolProperty(
+        name="Histogram",
+        description="How often each value occurs in the images, and the thresholds found in them or published",
+    )
     show_details: BoolProperty(
         name="Details", description="How the series is stored, and its UID"
     )

@@ -10,36 +10,42 @@ from .scans import FolderScan
 from .text import draw_text
 
 MOST_ROWS = 20
-# Size, spacing, orientation, positions; the rest (how it is stored, the UID) is folded in.
-SUMMARY_LINES = 4
+NOTE = "note: "
 
 
-def draw_report(column: Any, context: Any, series: bonemesh.Series) -> None:
-    """Draws the lines that `bonemesh info` prints: the summary, the notes, and the rest folded in."""
-    notes = [line for line in series.lines if line.startswith("note: ")]
-    lines = [line for line in series.lines if not line.startswith("note: ")]
-    for line in lines[:SUMMARY_LINES]:
-        draw_text(column, context, line, icon="DOT")
-    for note in notes:
-        draw_text(column, context, note.removeprefix("note: "), icon="ERROR")
-    if draw_fold(column, context, "show_details", "Details"):
-        for line in lines[SUMMARY_LINES:]:
-            draw_text(column, context, line)
+def draw_report(
+    column: Any, context: Any, scan: FolderScan, series: bonemesh.Series | None
+) -> None:
+    """Draws the notes on the chosen series, and folded in the rest that `bonemesh info` prints and what is in no series."""
+    lines = [] if series is None else series.lines
+    for line in lines:
+        if line.startswith(NOTE):
+            draw_text(column, context, line.removeprefix(NOTE), icon="ERROR")
+    row = column.row()
+    shows_details = series is not None and draw_fold(
+        row, context, "show_details", "Details"
+    )
+    left_out = scan.contents.left_out
+    files = "1 file" if len(left_out) == 1 else f"{len(left_out):,} files"
+    shows_left_out = bool(left_out) and draw_fold(
+        row, context, "show_left_out", f"{files} left out"
+    )
+    if shows_details:
+        for line in lines:
+            if not line.startswith(NOTE):
+                draw_text(column, context, line, icon="DOT")
+    if shows_left_out:
+        draw_left_out(column, context, scan.request.path, left_out)
 
 
 def draw_left_out(
-    column: Any, context: Any, scan: FolderScan, contents: bonemesh.Scan
+    column: Any, context: Any, folder: str, left_out: list[bonemesh.LeftOut]
 ) -> None:
-    """Draws how many files are in no series and, unfolded, which and why."""
-    number = len(contents.left_out)
-    if number == 0:
-        return
-    files = "1 file" if number == 1 else f"{number:,} files"
-    if draw_fold(column, context, "show_left_out", f"{files} left out"):
-        for left_out in contents.left_out[:MOST_ROWS]:
-            name = name_in(scan.request.path, left_out.path)
-            draw_text(column, context, f"{name}: {left_out.reason}")
-        draw_rest(column, context, number - MOST_ROWS, "bonemesh info lists them")
+    """Draws which files are in no series, and why."""
+    for file in left_out[:MOST_ROWS]:
+        name = name_in(folder, file.path)
+        draw_text(column, context, f"{name}: {file.reason}")
+    draw_rest(column, context, len(left_out) - MOST_ROWS, "bonemesh info lists them")
 
 
 def name_in(folder: str, path: Path) -> Path:
@@ -48,12 +54,12 @@ def name_in(folder: str, path: Path) -> Path:
     return path.relative_to(folder) if inside else path
 
 
-def draw_fold(column: Any, context: Any, name: str, text: str) -> bool:
+def draw_fold(layout: Any, context: Any, name: str, text: str) -> bool:
     """Draws the switch `name` of what is folded in; whether it is open."""
     folds = context.window_manager.bonemesh_folds
-    is_open = getattr(folds, name)
+    is_open = bool(getattr(folds, name))
     icon = "TRIA_DOWN" if is_open else "TRIA_RIGHT"
-    row = column.row()
+    row = layout.row()
     row.alignment = "LEFT"
     row.prop(folds, name, text=text, icon=icon, emboss=False)
     return is_open

@@ -69,10 +69,10 @@ def next_step(properties: Any, seen: Scene) -> str:
 def before_surface(properties: Any) -> str:
     """What to do until the surface is made."""
     if not properties.mesh_name.strip():
-        return "Set the HU threshold, then give a Mesh Filename"
+        return "Give a Mesh Filename"
     if not properties.mesh_directory.strip():
         return "Select where to save the mesh"
-    return "Press Render Surface Mesh"
+    return "Set the HU Threshold, then press Render Surface Mesh"
 
 
 def before_region(properties: Any, seen: Scene) -> str:

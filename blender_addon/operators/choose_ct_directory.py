@@ -2,10 +2,12 @@
 """bonemesh.choose_ct_directory: picks the folder of CT images, or one file with a whole volume."""
 
 import os
+from pathlib import Path
 from typing import ClassVar
 
+import bonemesh
 import bpy
-from bpy.props import BoolProperty, StringProperty
+from bpy.props import StringProperty
 from bpy.types import Context, Event, Operator
 
 from .. import inputs
@@ -20,14 +22,13 @@ class BONEMESH_OT_choose_ct_directory(DirectoryPicker, Operator):
     bl_options: ClassVar[set[str]] = {"UNDO", "INTERNAL"}
 
     target = "ct_directory"
+    advice = (
+        "Open the folder that holds the slices and press the blue button. Any one of the slices will do, "
+        "too: it stands for its folder. A NIfTI or NRRD file is a whole volume"
+    )
 
     directory: StringProperty(name="Folder", subtype="DIR_PATH", options={"SKIP_SAVE"})
     filepath: StringProperty(name="File", subtype="FILE_PATH", options={"SKIP_SAVE"})
-    # No single slices: whoever sees them picks one, and a folder is meant.
-    filter_glob: StringProperty(
-        default="*.nii;*.nii.gz;*.hdr;*.nrrd;*.nhdr;DICOMDIR", options={"HIDDEN"}
-    )
-    filter_folder: BoolProperty(default=True, options={"HIDDEN"})
 
     def invoke(self, context: Context, _event: Event) -> set[str]:
         """Opens the file browser at the last choice."""
@@ -39,8 +40,19 @@ class BONEMESH_OT_choose_ct_directory(DirectoryPicker, Operator):
         return {"RUNNING_MODAL"}
 
     def chosen(self) -> str:
-        """The file, or the folder that is shown where no file is picked; raises RefusalError."""
+        """The file with a whole volume, or else the folder that it is in or that is shown; raises RefusalError."""
         if not self.filepath:
             return super().chosen()
-        inputs.existing_path(bpy.path.abspath(self.filepath), missing=NO_FOLDER)
-        return self.filepath
+        path = inputs.existing_path(bpy.path.abspath(self.filepath), missing=NO_FOLDER)
+        if path.is_dir() or is_volume(path):
+            return self.filepath
+        return os.path.join(path.parent, "")
+
+
+def is_volume(file: Path) -> bool:
+    """Whether the file is a volume by itself, and no slice of one."""
+    try:
+        bonemesh.scan(file)
+    except (bonemesh.BonemeshError, OSError):
+        return False
+    return True

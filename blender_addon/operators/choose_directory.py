@@ -5,6 +5,7 @@ import bpy
 from bpy.types import Context, Event
 
 from .. import inputs
+from ..text import draw_text
 
 NO_FOLDER = "no folder is chosen; choose one"
 
@@ -13,6 +14,12 @@ class DirectoryPicker:
     """Mixed into an operator with a `directory`; names the property of `scene.bonemesh` to set."""
 
     target: str
+    advice: str
+    """What is said beside the list of files."""
+
+    def draw(self, context: Context) -> None:
+        """In the file browser, at its right."""
+        draw_text(self.layout, context, self.advice, icon="INFO")
 
     def invoke(self, context: Context, _event: Event) -> set[str]:
         """Opens the file browser where the last choice was."""

@@ -17,6 +17,7 @@ class BONEMESH_OT_choose_mesh_directory(DirectoryPicker, Operator):
     bl_options: ClassVar[set[str]] = {"UNDO", "INTERNAL"}
 
     target = "mesh_directory"
+    advice = "Open the folder for the meshes, then press the blue button. Files are not listed here"
 
     directory: StringProperty(name="Folder", subtype="DIR_PATH")
     filter_folder: BoolProperty(default=True, options={"HIDDEN"})

@@ -7,7 +7,7 @@ import bonemesh
 import bpy
 from bpy.types import Context, Operator
 
-from .. import selection
+from .. import selection, suggestions
 from ..inputs import ExportInputs
 from ..job import Job
 from .background import BackgroundOperator
@@ -26,7 +26,7 @@ class BONEMESH_OT_export_mesh(OnMesh, BackgroundOperator, Operator):
         active = context.active_object
         inputs = ExportInputs.read(
             context.scene.bonemesh_output,
-            context.scene.bonemesh.mesh_directory,
+            suggestions.filled(context).mesh_directory,
             active.name,
             bpy.path.abspath,
         )

@@ -15,6 +15,7 @@ from .. import (
     scene,
     stages,
     steps,
+    suggestions,
     window,
 )
 from ..inputs import RenderInputs
@@ -33,14 +34,16 @@ class BONEMESH_OT_render_surface_mesh(BackgroundOperator, Operator):
     def missing(cls, context: Context) -> str | None:
         """Needs images, a name and a folder."""
         return super().missing(context) or steps.missing_for_surface(
-            context.scene.bonemesh
+            suggestions.filled(context)
         )
 
     def prepare(self, context: Context) -> Job[bonemesh.Mesh]:
         """Checks the panel's fields."""
         properties = context.scene.bonemesh
         cropping.use_moved_box(context)
-        self._inputs = inputs = RenderInputs.read(properties, bpy.path.abspath)
+        self._inputs = inputs = RenderInputs.read(
+            suggestions.filled(context, anew=True), bpy.path.abspath
+        )
         short = memory_box.warning(properties)
         if short is not None:
             self.say("WARNING", short)
@@ -71,6 +74,7 @@ class BONEMESH_OT_render_surface_mesh(BackgroundOperator, Operator):
     def finish(self, context: Context, result: bonemesh.Mesh) -> str:
         """Adds the mesh to the scene, selected and in view."""
         previewing.dismiss()
+        suggestions.forget()
         scene.use_millimetres(context)
         bone = scene.add_bone(
             context, self._inputs.name, result, in_world_centre=self._center_in_world

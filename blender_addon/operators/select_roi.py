@@ -7,7 +7,7 @@ import bonemesh
 import bpy
 from bpy.types import Context, Operator
 
-from .. import scene, selection, steps, window
+from .. import scene, selection, steps, suggestions, window
 from ..findings import counted
 from ..inputs import RegionInputs, region_options
 from ..job import Job
@@ -24,7 +24,7 @@ class RegionOperator(OnSelection, BackgroundOperator):
     def missing(cls, context: Context) -> str | None:
         """Needs a name and a folder, too."""
         return super().missing(context) or steps.missing_for_region(
-            context.scene.bonemesh
+            suggestions.filled(context)
         )
 
     def mirror_options(self, _context: Context) -> dict[str, Any]:
@@ -34,7 +34,7 @@ class RegionOperator(OnSelection, BackgroundOperator):
     def prepare(self, context: Context) -> Job[list[bonemesh.Mesh]]:
         """Checks the panel's fields and copies the active object's mesh and selection."""
         self._inputs = inputs = RegionInputs.read(
-            context.scene.bonemesh, bpy.path.abspath
+            suggestions.filled(context, anew=True), bpy.path.abspath
         )
         context.view_layer.update()  # a script may just have moved the object
         self._source = source = selection.read_with_selection(context.active_object)
@@ -68,6 +68,7 @@ class RegionOperator(OnSelection, BackgroundOperator):
 
     def finish(self, context: Context, result: list[bonemesh.Mesh]) -> str:
         """Adds the regions where they were taken from; the selection and the active object stay."""
+        suggestions.forget()
         outputs = self._inputs.outputs(len(result))
         for region, output in zip(result, outputs, strict=True):
             scene.add_region(context, output.stem, region, self._source, self._options)

@@ -6,6 +6,7 @@ from typing import ClassVar
 import bpy
 from bpy.types import Context, Operator
 
+from .. import edges
 from .on_mesh import OnMesh
 
 
@@ -18,10 +19,10 @@ class BONEMESH_OT_start_lasso(OnMesh, Operator):
     remedy = "Make the bone active"
 
     def execute(self, context: Context) -> set[str]:
-        """Edit Mode, vertices, and the tool where there is a view to use it in."""
-        if context.active_object.mode != "EDIT":
-            bpy.ops.object.mode_set(mode="EDIT")
-        context.tool_settings.mesh_select_mode = (True, False, False)
+        """Edit Mode, faces without their edges, and the tool where there is a view to use it in."""
+        edges.edit_without(context.active_object)
+        # Faces, not vertices: from afar several share a pixel, and one face selects three vertices.
+        context.tool_settings.mesh_select_mode = (False, False, True)
         if context.area is not None and context.area.type == "VIEW_3D":
             bpy.ops.wm.tool_set_by_id(name="builtin.select_lasso")
         return {"FINISHED"}

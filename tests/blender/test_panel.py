@@ -11,7 +11,7 @@ FIELDS = [
     "Select File Directory of CT Images",
     "[ct_directory]",
     "HU Threshold [hu_threshold]",
-    "Thickness of Cut (mm) [cut_thickness]",
+    "[show_preview]",
     "Mesh Filename",
     "[mesh_name]",
     "Select File Location to Save Mesh",
@@ -19,6 +19,7 @@ FIELDS = [
     "Render Surface Mesh",
     "Render Again",
     "Settings from File",
+    "Thickness of Cut (mm) [cut_thickness]",
     "Segmented Mesh Filename",
     "[roi_name]",
     "Select Region of Interest",
@@ -61,7 +62,7 @@ def test_what_the_images_hold_is_shown_below_their_path(panel: dict[str, Any]) -
 
 
 def test_the_first_line_says_what_to_do_next(panel: dict[str, Any]) -> None:
-    assert panel["main"][0] == ["Press Render Surface Mesh"]
+    assert " ".join(panel["main"][0]).endswith("press Render Surface Mesh")
     assert not isinstance(panel["busy"][0], list)
 
 
@@ -135,6 +136,43 @@ def test_limits_and_defaults_are_the_published_ones(panel: dict[str, Any]) -> No
     assert panel["limits"]["hu_threshold"] == [-1024, 3071, 350]
     assert panel["limits"]["cut_thickness"][0] == 0.0
     assert panel["limits"]["cut_thickness"][2] == 5.0
+
+
+def test_the_check_names_the_mesh_that_it_looks_at(panel: dict[str, Any]) -> None:
+    assert without_boxes(panel["with a mesh"])[-1] == "Check Mesh: bone"
+
+
+def test_a_file_that_would_be_replaced_is_named_before_it_is(
+    panel: dict[str, Any],
+) -> None:
+    told = without_boxes(panel["with a mesh"])
+    button = told.index("Render Surface Mesh")
+    assert told[button - 1] == "! bone.stl will be replaced"
+    assert told[told.index("Select Region of Interest") - 1] == "[roi_name]"
+
+
+def test_empty_fields_show_what_is_taken_for_them(
+    panel: dict[str, Any],
+) -> None:
+    empty = panel["empty"]
+    assert empty["shown"]["mesh_directory"] == empty["folder"]
+    assert empty["shown"]["mesh_name"] == "phantom"
+    assert empty["shown"]["roi_name"] == "bone region"
+    assert "press Render Surface Mesh" in " ".join(empty["next"])
+    assert empty["end"] == ["FINISHED"]
+    assert empty["files"] == ["phantom.stl", "phantom.stl.json"]
+    assert empty["then"]["mesh_name"] == "phantom-2"
+    assert empty["then"]["roi_name"] == "phantom region"
+    assert empty["fields"] == ["", "", ""]
+
+
+def test_a_script_has_to_say_what_it_wants(panel: dict[str, Any]) -> None:
+    assert "Mesh Filename is empty" in panel["empty for a script"]
+
+
+def test_the_pickers_say_what_they_want(panel: dict[str, Any]) -> None:
+    assert "slices" in " ".join(panel["ct picker"])
+    assert "not listed" in " ".join(panel["mesh picker"])
 
 
 def test_a_running_job_is_shown_with_its_cancel_button(panel: dict[str, Any]) -> None:

@@ -49,11 +49,19 @@ def test_the_histogram_and_its_thresholds_are_shown_each_a_button(
     assert panel["thresholds"] == [round(s["threshold_hu"]) for s in suggestions]
     for title, suggestion in zip(panel["titles"], suggestions, strict=True):
         assert suggestion["reason"] in title
-    picture, *buttons, switch = panel["box"]
+    fold, picture, *buttons = panel["open"]
+    assert fold == "Histogram [show_histogram]"
     assert picture == "picture"
     assert len(buttons) == len(suggestions)
     assert [b for b in buttons if b.startswith("> ")] == ["> Skull 350"]
-    assert switch == "Live Preview [show_preview]"
+
+
+def test_folded_in_the_recommended_threshold_is_at_hand(
+    answers: dict[str, Any],
+) -> None:
+    fold, button = answers["panel"]["closed"]
+    assert fold == "Histogram [show_histogram]"
+    assert button in answers["panel"]["open"]
 
 
 @pytest.mark.parametrize("how", ["slider", "pressed", "crop", "again"])

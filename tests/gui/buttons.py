@@ -24,6 +24,7 @@ COLUMNS = (
 MOST_TURNS = 12
 WHEEL_CLICKS = 6
 EDGE_PX = 3
+UNFOLDING = 20  # ticks that a part of a panel takes to unfold
 
 
 class Region:
@@ -93,6 +94,31 @@ class Region:
                     met.append(found)
                     return met
         return met
+
+    def shows(self, name: str) -> Generator[None, None, bool]:
+        """Whether such a thing is in sight, without scrolling."""
+        met = yield from self._look_for(name)
+        return bool(met) and name in met[-1]
+
+    def unfold(self, name: str) -> Steps:
+        """Opens the folded part of a panel that holds `name`, by a click on its header."""
+        yield from self.turn("WHEELDOWNMOUSE", MOST_TURNS * WHEEL_CLICKS)
+        region = self.region
+        x = region.x + COLUMNS[0] * region.width
+        for y in range(region.y + region.height - EDGE_PX, region.y, -ROW_PX):
+            yield from self.hand.move(x, y)
+            if self.under_mouse():
+                continue  # no header
+            yield from self.hand.click()
+            yield from ticks(UNFOLDING)
+            for below in range(y - ROW_PX, y - 4 * ROW_PX, -ROW_PX):
+                yield from self.hand.move(x, below)
+                if name in self.under_mouse():
+                    return
+            yield from self.hand.move(x, y)
+            yield from self.hand.click()
+            yield from ticks(UNFOLDING)
+        raise AssertionError(f"no header in the {self.kind} region unfolds {name}")
 
     def turn(self, wheel: str, clicks: int) -> Steps:
         """Turns the mouse wheel in the middle of the region."""

@@ -11,9 +11,18 @@ from desk import TAB, Desk
 from screen import changed, share_of_bone, share_of_region
 from waiting import Steps, ticks, wait_until
 
-BONE, REGION = "skull", "piece of the side"
+BONE, REGION, EXPORTED = "skull", "piece of the side", "for the printer"
+SUGGESTED = "phantom head"
 THICKNESS_MM = 8.0
-CLOSER, LASSO_PX = 2, 90  # turns of the wheel before the lasso, and its radius
+STEPS = (
+    "bonemesh.choose_ct_directory",
+    "bonemesh.hu_threshold",
+    "bonemesh.render_surface_mesh",
+    "bonemesh.cut_thickness",
+    "bonemesh.select_roi",
+    "bonemesh.check_mesh",
+)
+LASSO_PX = 60
 COARSER = 1.2  # than the usual phantom: a window without a graphics card draws slowly
 LONGEST_PAUSE_S = 2.0  # 0.1 s with a graphics card on a machine that does nothing else
 
@@ -94,6 +103,29 @@ def the_file_browser() -> Any:
     return Region(*found[0], "UI")
 
 
+def the_panel_suggests_names_and_a_folder(desk: Desk) -> Steps:
+    filled = desk.module("suggestions").filled(bpy.context)
+    assert filled.mesh_name == SUGGESTED, filled.mesh_name
+    assert filled.mesh_directory == str(desk.ct.parent), filled.mesh_directory
+    yield
+
+
+def every_step_is_in_sight_without_scrolling(desk: Desk) -> Steps:
+    yield from desk.sidebar.turn("WHEELUPMOUSE", 60)
+    for name in STEPS:
+        is_seen = yield from desk.sidebar.shows(name)
+        assert is_seen, f"{name} is below the fold"
+
+
+def the_histogram_unfolds(desk: Desk) -> Steps:
+    yield from desk.sidebar.click("show_histogram")
+    yield from ticks(10)
+    yield from desk.picture("the histogram")
+    yield from desk.sidebar.find("bonemesh.use_threshold")
+    yield from desk.sidebar.click("show_histogram")
+    assert not bpy.context.window_manager.bonemesh_folds.show_histogram
+
+
 def names_and_a_folder_are_typed(desk: Desk) -> Steps:
     desk.meshes.mkdir()
     yield from desk.sidebar.fill("bonemesh.mesh_name", BONE)
@@ -162,8 +194,6 @@ def a_region_is_selected_with_the_lasso(desk: Desk) -> Steps:
     yield from desk.to_the_middle()
     hand = desk.canvas.hand
     middle = hand.place
-    for _ in range(CLOSER):
-        yield from hand.press("WHEELUPMOUSE")
     yield from desk.sidebar.click("bonemesh.start_lasso")
     yield from wait_until(lambda: bpy.context.mode == "EDIT_MESH", "Edit Mode", 60.0)
     yield from ticks(5)
@@ -179,8 +209,10 @@ def a_region_is_selected_with_the_lasso(desk: Desk) -> Steps:
     bone = bpy.data.objects[BONE]
     yield from wait_until(lambda: selected(bone) > 0, "the lasso selects", 60.0)
     yield from ticks(10)
-    yield from desk.picture("the lasso")
+    shown = yield from desk.picture("the lasso")
     assert selected(bone) < len(bone.data.vertices) / 4
+    share = share_of_bone(shown, desk.parts()["view"])
+    assert share > 0.1, f"only {share:.1%} of the view shows bone in Edit Mode"
 
 
 def selected(bone: Any) -> int:
@@ -207,6 +239,21 @@ def the_region_under_the_lasso_becomes_a_solid(desk: Desk) -> Steps:
     assert share > 0.005, f"only {share:.2%} of the view shows the region"
 
 
+def the_bone_is_exported(desk: Desk) -> Steps:
+    yield from desk.sidebar.unfold("bonemesh_output.format")
+    yield from desk.picture("the export")
+    yield from desk.sidebar.find("bonemesh_output.format")
+    yield from desk.sidebar.hand.press("WHEELDOWNMOUSE", ctrl=True)
+    assert desk.window.scene.bonemesh_output.format == "3mf"
+    yield from desk.sidebar.fill("bonemesh_output.file_name", EXPORTED)
+    yield from desk.sidebar.click("bonemesh.export_mesh")
+    file = desk.meshes / f"{EXPORTED}.3mf"
+    yield from wait_until(file.exists, "the file is written")
+    yield from desk.until_done()
+    assert file.read_bytes()[:2] == b"PK"
+    assert str(file) in desk.messages()
+
+
 def quitting_while_something_is_rendered_ends_blender(desk: Desk) -> Steps:
     yield from desk.sidebar.click("bonemesh.render_surface_mesh")
     yield from wait_until(desk.running, "the rendering begins")
@@ -216,11 +263,15 @@ STORY = [
     the_zip_dropped_on_the_window_installs,
     the_sidebar_has_the_tab,
     a_folder_of_ct_images_is_picked,
+    the_panel_suggests_names_and_a_folder,
+    every_step_is_in_sight_without_scrolling,
+    the_histogram_unfolds,
     names_and_a_folder_are_typed,
     rendering_can_be_cancelled,
     the_bone_is_rendered_while_the_window_stays_alive,
     the_mesh_is_checked,
     a_region_is_selected_with_the_lasso,
     the_region_under_the_lasso_becomes_a_solid,
+    the_bone_is_exported,
     quitting_while_something_is_rendered_ends_blender,
 ]

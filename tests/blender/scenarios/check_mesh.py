@@ -14,7 +14,8 @@ from panel import drawn
 def box() -> list[str]:
     """What the box of the active mesh shows now, below its button."""
     shown = drawn()
-    below = shown[shown.index("Check Mesh") + 1 :]
+    button = next(row for row in shown if row[:10] == "Check Mesh")
+    below = shown[shown.index(button) + 1 :]
     return next((item for item in below if isinstance(item, list)), [])
 
 

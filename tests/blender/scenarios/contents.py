@@ -190,6 +190,9 @@ def main(zip: str, out: str, ct: str, two: str, nifti: str) -> dict[str, Any]:
     answer["nifti"] = until_scanned()
     picked = bpy.ops.bonemesh.choose_ct_directory(filepath=nifti)
     answer["file picked"] = [sorted(picked), properties.ct_directory]
+    one = next(Path(ct).rglob("*.dcm"))
+    picked = bpy.ops.bonemesh.choose_ct_directory(filepath=str(one))
+    answer["slice picked"] = [sorted(picked), properties.ct_directory]
     answer["remembered"] = remembered(properties, two, ct)
     answer["replaced"] = replaced(properties, two, ct)
     answer["stopped"] = stopped(properties, two)

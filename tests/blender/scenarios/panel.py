@@ -1,6 +1,8 @@
 """What the panels show, read from a layout that takes notes instead of drawing."""
 
+import shutil
 from functools import partial
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -12,9 +14,15 @@ from background import press, until_end
 class Layout:
     """Notes every label, field and button in the order in which they are drawn; a box is a list of its own."""
 
-    def __init__(self, shown: list[Any], buttons: list[Any]) -> None:
+    def __init__(
+        self,
+        shown: list[Any],
+        buttons: list[Any],
+        placeholders: dict[str, str] | None = None,
+    ) -> None:
         self.shown = shown
         self.buttons = buttons
+        self.placeholders = {} if placeholders is None else placeholders
 
     def column(self, **_options: Any) -> "Layout":
         return self
@@ -23,7 +31,7 @@ class Layout:
 
     def box(self) -> "Layout":
         self.shown.append([])
-        return Layout(self.shown[-1], self.buttons)
+        return Layout(self.shown[-1], self.buttons, self.placeholders)
 
     def separator(self, factor: float) -> None:
         pass
@@ -32,8 +40,14 @@ class Layout:
         self.shown.append(f"! {text}" if icon == "ERROR" else text)
 
     def prop(
-        self, data: Any, name: str, text: str | None = None, **_options: Any
+        self,
+        data: Any,
+        name: str,
+        text: str | None = None,
+        placeholder: str = "",
+        **_options: Any,
     ) -> None:
+        self.placeholders[name] = placeholder
         shown = data.bl_rna.properties[name].name if text is None else text
         self.shown.append(f"{shown} [{name}]".lstrip())
 
@@ -60,11 +74,13 @@ class Layout:
 
 
 def drawn(
-    panel: str = "BONEMESH_PT_segment_ct", buttons: list[Any] | None = None
+    panel: str = "BONEMESH_PT_segment_ct",
+    buttons: list[Any] | None = None,
+    placeholders: dict[str, str] | None = None,
 ) -> list[Any]:
-    """Everything that the panel shows now; the values of its buttons are added to `buttons`."""
+    """Everything that the panel shows now; its buttons' values and its fields' placeholders are added to the others."""
     shown: list[Any] = []
-    layout = Layout(shown, [] if buttons is None else buttons)
+    layout = Layout(shown, [] if buttons is None else buttons, placeholders)
     cls = getattr(bpy.types, panel)
     stand_in = SimpleNamespace(layout=layout)
     if hasattr(cls, "draw_fields"):
@@ -73,9 +89,50 @@ def drawn(
     return shown
 
 
+def placeholders() -> dict[str, str]:
+    """What the empty fields of the panel show."""
+    found: dict[str, str] = {}
+    drawn(placeholders=found)
+    return {name: found[name] for name in ("mesh_directory", "mesh_name", "roi_name")}
+
+
+def picker(name: str) -> list[str]:
+    """What a file browser says at its side."""
+    shown: list[Any] = []
+    cls = getattr(bpy.types, f"BONEMESH_OT_{name}")
+    stand_in = SimpleNamespace(layout=Layout(shown, []), advice=cls.advice)
+    cls.draw(stand_in, bpy.context)
+    return shown
+
+
+def empty_fields(ct: str, out: str) -> dict[str, Any]:
+    """Presses Render Surface Mesh with no names and no folder, the images in a folder of their own."""
+    beside = Path(out) / "beside"
+    shutil.copytree(ct, beside / "images")
+    properties = bpy.context.scene.bonemesh
+    stage.addon_scanning()
+    properties.mesh_name = properties.mesh_directory = properties.roi_name = ""
+    properties.ct_directory = str(beside / "images")
+    bpy.ops.bonemesh.scan_ct_directory()
+    answer: dict[str, Any] = {"shown": placeholders(), "folder": str(beside)}
+    bpy.ops.object.select_all(action="DESELECT")
+    bone = bpy.context.view_layer.objects.active
+    bpy.data.objects.remove(bone)
+    answer["next"] = drawn()[0]
+    operator, context, gate = press("render_surface_mesh", "render")
+    gate.open()
+    answer["end"] = until_end(operator, context)
+    answer["files"] = sorted(p.name for p in beside.iterdir() if p.is_file())
+    answer["then"] = placeholders()
+    fields = ("mesh_name", "mesh_directory", "roi_name")
+    answer["fields"] = [getattr(properties, name) for name in fields]
+    return answer
+
+
 def main(zip: str, out: str, ct: str) -> dict[str, Any]:
     """Says what is shown without a job and during one."""
     stage.install(zip)
+    stage.clear_scene()
     properties = stage.fill_panel(ct, out)
     panels = [
         bpy.types.BONEMESH_PT_segment_ct,
@@ -112,4 +169,12 @@ def main(zip: str, out: str, ct: str) -> dict[str, Any]:
     answer["busy"] = drawn("BONEMESH_PT_segment_ct")
     gate.open()
     until_end(operator, context)
+    answer["with a mesh"] = drawn("BONEMESH_PT_segment_ct")
+    for name in ("ct picker", "mesh picker"):
+        answer[name] = picker(f"choose_{name.split()[0]}_directory")
+    properties.mesh_name = ""
+    answer["empty for a script"] = stage.message_of(
+        bpy.ops.bonemesh.render_surface_mesh
+    )
+    answer["empty"] = empty_fields(ct, out)
     return answer

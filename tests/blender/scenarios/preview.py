@@ -67,13 +67,24 @@ def first(previewing: Any) -> dict[str, Any]:
     }
 
 
-def panel() -> dict[str, Any]:
-    """The box at the threshold."""
-    buttons: list[Any] = []
+def at_the_threshold(buttons: list[Any] | None = None) -> list[Any]:
+    """What is between the slider and the mesh's name, boxes laid open."""
     shown = drawn(buttons=buttons)
+    first, last = shown.index("[show_preview]") + 1, shown.index("Mesh Filename")
+    rows = ([row] if isinstance(row, str) else row for row in shown[first:last])
+    return [row for several in rows for row in several]
+
+
+def panel() -> dict[str, Any]:
+    """The thresholds, folded in and out."""
+    folds = bpy.context.window_manager.bonemesh_folds
+    answer: dict[str, Any] = {"closed": at_the_threshold()}
+    folds.show_histogram = True
+    buttons: list[Any] = []
+    answer["open"] = at_the_threshold(buttons)
+    folds.show_histogram = False
     thresholds = [b for b in buttons if b.idname == "bonemesh.use_threshold"]
-    return {
-        "box": shown[shown.index("HU Threshold [hu_threshold]") + 1],
+    return answer | {
         "thresholds": [button.hu for button in thresholds],
         "titles": [button.title for button in thresholds],
     }
@@ -94,7 +105,7 @@ def moved(properties: Any, previewing: Any) -> dict[str, Any]:
     answer["crop"] = [until_done(previewing), of_library(600, crop)]
     properties.crop = "left half"
     answer["no box"] = [until_done(previewing), str(previewing.problem())]
-    answer["said"] = panel()["box"]
+    answer["said"] = at_the_threshold()
     properties.crop = ""
     properties.hu_threshold = 3071
     answer["nothing"] = [until_done(previewing), str(previewing.problem())]
