@@ -9,6 +9,8 @@ from . import library
 def parts() -> tuple[ModuleType, ...]:
     """What is registered, in this order, where the compiled library loads."""
     from . import (
+        compare_panel,
+        compare_properties,
         directions,
         edges,
         export_panel,
@@ -29,6 +31,7 @@ def parts() -> tuple[ModuleType, ...]:
         properties,
         region_properties,
         output_properties,
+        compare_properties,
         slice_properties,
         slice_updates,
         operators,
@@ -36,6 +39,7 @@ def parts() -> tuple[ModuleType, ...]:
         panels,
         views_panel,
         slices_panel,
+        compare_panel,
         export_panel,
         help_panel,
         directions,

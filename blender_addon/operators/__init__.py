@@ -12,6 +12,7 @@ from .check_mesh import BONEMESH_OT_check_mesh
 from .choose_ct_directory import BONEMESH_OT_choose_ct_directory
 from .choose_mesh_directory import BONEMESH_OT_choose_mesh_directory
 from .choose_series import BONEMESH_OT_choose_series
+from .compare_meshes import BONEMESH_OT_compare_meshes
 from .export_mesh import BONEMESH_OT_export_mesh
 from .hide_slices import BONEMESH_OT_hide_slices
 from .measure_thickness import BONEMESH_OT_measure_thickness
@@ -54,6 +55,7 @@ CLASSES = (
     BONEMESH_OT_check_mesh,
     BONEMESH_OT_select_faults,
     BONEMESH_OT_export_mesh,
+    BONEMESH_OT_compare_meshes,
     BONEMESH_OT_show_slices,
     BONEMESH_OT_hide_slices,
     BONEMESH_OT_view_patient,
