@@ -151,7 +151,7 @@ def hand_over(context: Any, surface: Surface) -> None:
     if surface.mesh is None:
         scene_preview.remove()
         return
-    scene_preview.show(context, surface.mesh)
+    scene_preview.show(context, surface.mesh, surface.edges)
     if not state.is_framed:
         state.is_framed = True
         scene.use_millimetres(context)
@@ -211,7 +211,7 @@ def after_saving(*_: Any) -> None:
     """Puts it back."""
     surface = state.surface
     if state.is_shown and surface is not None and surface.mesh is not None:
-        scene_preview.show(bpy.context, surface.mesh)
+        scene_preview.show(bpy.context, surface.mesh, surface.edges)
 
 
 @persistent

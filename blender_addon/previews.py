@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import bonemesh
 
 from .job import Job
+from .mesh_edges import Edges, edges_of
 
 KEPT = 4  # finished readings, a few MB each: to go back to another series without reading it again
 BIN_HU = 10
@@ -63,6 +64,7 @@ class Surface(NamedTuple):
 
     wanted: Wanted
     mesh: bonemesh.Mesh | None
+    edges: Edges | None
     error: BaseException | None
 
 
@@ -132,16 +134,17 @@ class SurfaceWorker:
                 self._pending = None
                 if cancel.is_cancelled:
                     self._cancel = cancel = bonemesh.Cancel()
-            mesh = error = None
+            mesh = edges = error = None
             try:
                 mesh = preview.surface(
                     wanted.threshold_hu, crop=wanted.crop, cancel=cancel
                 )
+                edges = edges_of(mesh.triangles, len(mesh.vertices))
             except BaseException as raised:  # noqa: BLE001 - kept for the panel, which shows it
                 error = raised
             with self._lock:
                 if not cancel.is_cancelled:
-                    self._newest = Surface(wanted, mesh, error)
+                    self._newest = Surface(wanted, mesh, edges, error)
 
 
 _readings: dict[SeriesRequest, Reading] = {}

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from . import scene_materials
 from .findings import of_rendering
 from .inputs import RefusalError
+from .mesh_edges import Edges
 from .scene_materials import BONE_COLOUR, REGION_COLOUR
 from .selection import CENTRE_MM, PATIENT_MM, Source, relative_to
 
@@ -265,9 +266,12 @@ def add_object(
 
 
 def fill(
-    data: Any, vertices: NDArray[np.float32], triangles: NDArray[np.uint32]
+    data: Any,
+    vertices: NDArray[np.float32],
+    triangles: NDArray[np.uint32],
+    edges: Edges | None = None,
 ) -> None:
-    """Vertices and triangles into an empty mesh, nothing selected.
+    """Vertices and triangles into an empty mesh, nothing selected; quicker with their edges.
 
     Through the attributes, which are copied as a whole; the older `vertices.foreach_set("co")` goes
     through them one at a time and takes twice as long.
@@ -281,7 +285,11 @@ def fill(
     data.polygons.foreach_set(
         "loop_start", np.arange(0, len(corners), 3, dtype=np.int32)
     )
-    data.update(calc_edges=True)
+    if edges is not None:
+        data.edges.add(len(edges.ends))
+        data.attributes[".edge_verts"].data.foreach_set("value", edges.ends.ravel())
+        data.attributes[".corner_edge"].data.foreach_set("value", edges.of_corners)
+    data.update(calc_edges=edges is None)
     # Blender makes new elements selected: the next region would begin with everything.
     for selection in (".select_vert", ".select_edge", ".select_poly"):
         attribute = data.attributes.get(selection)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
+from .mesh_edges import Edges
 from .scene import fill
 from .scene_materials import material
 
@@ -23,7 +24,7 @@ TAG = "bonemesh_preview"
 COLOUR = (0.45, 0.60, 0.75, 1.0)
 
 
-def show(context: Any, mesh: bonemesh.Mesh) -> None:
+def show(context: Any, mesh: bonemesh.Mesh, edges: Edges | None) -> None:
     """Shows `mesh` at its place in the patient, in place of what was shown before."""
     placed = found(context.scene)
     if placed is None:
@@ -35,7 +36,7 @@ def show(context: Any, mesh: bonemesh.Mesh) -> None:
         placed.data.materials.append(material(NAME, COLOUR))
         context.scene.collection.objects.link(placed)
     placed.data.clear_geometry()
-    fill(placed.data, mesh.vertices, mesh.triangles)
+    fill(placed.data, mesh.vertices, mesh.triangles, edges)
 
 
 def found(scene: Any) -> Any:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 
@@ -29,7 +30,11 @@ class Held:
         assert self.gate.wait(10.0), "the gate was never opened"
         if threshold_hu > 3000:
             raise ValueError("nothing there")
-        return SimpleNamespace(threshold_hu=threshold_hu)
+        return SimpleNamespace(
+            threshold_hu=threshold_hu,
+            vertices=np.zeros((3, 3), dtype=np.float32),
+            triangles=np.array([[0, 1, 2]], dtype=np.uint32),
+        )
 
 
 def wanted(previews: ModuleType, threshold_hu: int) -> Any:

@@ -1,7 +1,7 @@
 //! A triangle mesh.
 
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use bonemesh::{Error, MeshError, PatientFrame, TriangleMesh};
 use ndarray::Array2;
@@ -32,6 +32,8 @@ pub(crate) struct Mesh {
 pub(crate) struct Parts {
     vertices: Array2<f32>,
     triangles: Array2<u32>,
+    /// The same for the library, once it was asked for by what is asked again and again.
+    kept: OnceLock<TriangleMesh>,
 }
 
 #[pymethods]
@@ -139,6 +141,7 @@ impl Mesh {
             parts: Arc::new(Parts {
                 vertices: rows(single),
                 triangles: rows(triangles),
+                kept: OnceLock::new(),
             }),
             report: json(report),
         })
@@ -160,5 +163,14 @@ impl Parts {
         };
         let vertices_mm = vertices.iter().map(|v| v.map(f64::from)).collect();
         Ok(TriangleMesh::new(vertices_mm, triangles.to_vec())?)
+    }
+
+    /// The same, kept as long as the mesh is: for short work, which the copy would take longer than.
+    pub(crate) fn kept_mesh(&self) -> Result<&TriangleMesh, Error> {
+        if let Some(mesh) = self.kept.get() {
+            return Ok(mesh);
+        }
+        let mesh = self.mesh()?;
+        Ok(self.kept.get_or_init(|| mesh))
     }
 }

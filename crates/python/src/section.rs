@@ -33,7 +33,7 @@ pub(crate) fn section<'py>(
     let plane = Plane::new(normal, offset).map_err(|e| errors::unusable(py, e))?;
     let parts = mesh.parts();
     let outlines = detached(py, watch, move |task| {
-        bonemesh::pool(None)?.install(|| Ok(bonemesh::section(&parts.mesh()?, &plane, task)?))
+        bonemesh::pool(None)?.install(|| Ok(bonemesh::section(parts.kept_mesh()?, &plane, task)?))
     })?;
     let lines = outlines
         .into_iter()
