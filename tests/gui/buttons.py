@@ -24,7 +24,9 @@ COLUMNS = (
 MOST_TURNS = 12
 WHEEL_CLICKS = 6
 EDGE_PX = 3
-UNFOLDING = 20  # ticks that a part of a panel takes to unfold
+UNFOLDING = (
+    60  # ticks in which a part of a panel has unfolded, and hears the next click
+)
 
 
 class Region:
@@ -101,23 +103,26 @@ class Region:
         return bool(met) and name in met[-1]
 
     def unfold(self, name: str) -> Steps:
-        """Opens the folded part of a panel that holds `name`, by a click on its header."""
+        """Opens the folded part of a panel that begins with `name`, by a click on its header; the lowest are tried first."""
         yield from self.turn("WHEELDOWNMOUSE", MOST_TURNS * WHEEL_CLICKS)
         region = self.region
-        x = region.x + COLUMNS[0] * region.width
-        for y in range(region.y + region.height - EDGE_PX, region.y, -ROW_PX):
+        x, y = region.x + COLUMNS[0] * region.width, region.y + ROW_PX
+        while y < region.y + region.height:
             yield from self.hand.move(x, y)
-            if self.under_mouse():
-                continue  # no header
-            yield from self.hand.click()
-            yield from ticks(UNFOLDING)
-            for below in range(y - ROW_PX, y - 4 * ROW_PX, -ROW_PX):
-                yield from self.hand.move(x, below)
-                if name in self.under_mouse():
-                    return
-            yield from self.hand.move(x, y)
-            yield from self.hand.click()
-            yield from ticks(UNFOLDING)
+            is_header = not self.under_mouse()
+            if is_header:
+                yield from self.hand.click()
+                yield from ticks(UNFOLDING)
+                # A field's own name may stand to its left.
+                right = region.x + COLUMNS[1] * region.width
+                for below in range(y - ROW_PX, y - 4 * ROW_PX, -ROW_PX // 2):
+                    yield from self.hand.move(right, max(below, region.y + EDGE_PX))
+                    if name in self.under_mouse():
+                        return
+                yield from self.hand.move(x, y)
+                yield from self.hand.click()
+                yield from ticks(UNFOLDING)
+            y += 2 * ROW_PX if is_header else ROW_PX
         raise AssertionError(f"no header in the {self.kind} region unfolds {name}")
 
     def turn(self, wheel: str, clicks: int) -> Steps:
