@@ -1,5 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bonemesh in Blender: bone meshes from CT images, and regions of interest cut out of them."""
+"""Bonemesh in Blender: bone meshes from CT images, and regions of interest cut out of them.
+
+    series -> preview, crop -> request -> jobs -> scene -> slices, views, reports
+
+Which images there are, what they look like, what is asked for, the work beside the window, and what
+becomes of its result. `operators` take one step each, `panels` show the steps, `properties` keep what
+was typed. No algorithm is here: these are in the library.
+"""
 
 from types import ModuleType
 
@@ -8,27 +15,29 @@ from . import library
 
 def parts() -> tuple[ModuleType, ...]:
     """What is registered, in this order, where the compiled library loads."""
-    from . import (
+    from . import operators
+    from .panels import (
         compare_panel,
-        compare_properties,
-        directions,
-        edges,
         export_panel,
         help_panel,
-        operators,
-        output_properties,
-        panels,
-        previewing,
-        properties,
-        region_properties,
-        slice_properties,
-        slice_updates,
+        segment_ct,
         slices_panel,
         views_panel,
     )
+    from .preview import previewing
+    from .properties import (
+        compare_properties,
+        output_properties,
+        region_properties,
+        slice_properties,
+        surface_properties,
+    )
+    from .scene import edges
+    from .slices import slice_updates
+    from .views import directions
 
     return (
-        properties,
+        surface_properties,
         region_properties,
         output_properties,
         compare_properties,
@@ -36,7 +45,7 @@ def parts() -> tuple[ModuleType, ...]:
         slice_updates,
         operators,
         previewing,
-        panels,
+        segment_ct,
         views_panel,
         slices_panel,
         compare_panel,
@@ -54,17 +63,17 @@ def register() -> None:
         for part in parts():
             part.register()
     else:
-        from . import panel_without_library
+        from .panels import without_library
 
-        panel_without_library.register(problem)
+        without_library.register(problem)
 
 
 def unregister() -> None:
     """Called by Blender when the add-on is disabled and when Blender ends."""
-    from . import panel_without_library
+    from .panels import without_library
 
-    if panel_without_library.is_registered():
-        panel_without_library.unregister()
+    if without_library.is_registered():
+        without_library.unregister()
     else:
         for part in reversed(parts()):
             part.unregister()

@@ -5,7 +5,8 @@ import atexit
 
 import bpy
 
-from .. import previewing, scanning
+from ..preview import previewing
+from ..series import scanning
 from . import background
 from .cancel import BONEMESH_OT_cancel
 from .check_mesh import BONEMESH_OT_check_mesh

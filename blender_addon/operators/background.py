@@ -13,10 +13,11 @@ from typing import Any
 
 import bonemesh
 
-from .. import last_messages, window
-from ..job import BusyError, Job, refuse_while_running
-from ..job import stop as stop_job
-from ..messages import EXPECTED, one_line
+from ..jobs import last_messages
+from ..jobs.job import BusyError, Job, refuse_while_running
+from ..jobs.job import stop as stop_job
+from ..jobs.messages import EXPECTED, one_line
+from ..views import window
 from .step import Step
 
 TICK_S = 0.1

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from bpy.types import Context, Operator
 
-from .. import job
+from ..jobs import job
 
 
 class BONEMESH_OT_cancel(Operator):

@@ -6,8 +6,9 @@ from typing import Any, ClassVar
 import bonemesh
 from bpy.types import Context, Operator
 
-from .. import findings, scene, selection
-from ..job import Job
+from ..jobs.job import Job
+from ..reports import findings
+from ..scene import meshes, selection
 from .background import BackgroundOperator
 from .on_mesh import OnMesh
 
@@ -39,7 +40,7 @@ class BONEMESH_OT_check_mesh(OnMesh, BackgroundOperator, Operator):
 
     def finish(self, _context: Context, result: dict[str, Any]) -> str:
         """Notes the findings with the object, where the panel shows them."""
-        scene.keep_check(self._source.name, result)
+        meshes.keep_check(self._source.name, result)
         answer = f"{self._source.name}: {findings.verdict(result)}"
         reasons = result["reasons"]
         return f"{answer}: {'. '.join(reasons)}" if reasons else answer

@@ -10,7 +10,7 @@ import bpy
 from bpy.props import StringProperty
 from bpy.types import Context, Event, Operator
 
-from .. import inputs
+from ..request import inputs
 from .choose_directory import NO_FOLDER, DirectoryPicker
 
 

@@ -4,8 +4,8 @@
 import bpy
 from bpy.types import Context, Event
 
-from .. import inputs
-from ..text import draw_text
+from ..panels.text import draw_text
+from ..request import inputs
 
 NO_FOLDER = "no folder is chosen; choose one"
 

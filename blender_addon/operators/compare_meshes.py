@@ -9,9 +9,11 @@ import numpy as np
 from bpy.types import Context, Operator
 from numpy.typing import NDArray
 
-from .. import distances, scene, scene_crop, scene_distances, selection
-from ..inputs import RefusalError
-from ..job import Job
+from ..crop import scene_crop
+from ..jobs.job import Job
+from ..reports import distances
+from ..request.inputs import RefusalError
+from ..scene import meshes, scene_distances, selection
 from .background import BackgroundOperator
 from .on_mesh import OnMesh
 
@@ -88,7 +90,7 @@ class BONEMESH_OT_compare_meshes(OnMesh, BackgroundOperator, Operator):
         full_mm = context.scene.bonemesh_compare.full_mm
         scene_distances.keep(placed, result.signed_mm, full_mm)
         kept = {**result.report, scene_distances.PLACE: self._place}
-        scene.keep_report(placed, scene_distances.COMPARED, kept)
+        meshes.keep_report(placed, scene_distances.COMPARED, kept)
         scene_distances.set_shown(context, True)
         first, second, _ = distances.lines(result.report, self._name)
         return f"{self._name}: {first}, {second}"

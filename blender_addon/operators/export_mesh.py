@@ -7,9 +7,10 @@ import bonemesh
 import bpy
 from bpy.types import Context, Operator
 
-from .. import selection, suggestions
-from ..inputs import ExportInputs
-from ..job import Job
+from ..jobs.job import Job
+from ..request import suggestions
+from ..request.inputs import ExportInputs
+from ..scene import selection
 from .background import BackgroundOperator
 from .on_mesh import OnMesh
 

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from bpy.types import Context, Operator
 
-from .. import scene_slices, slice_updates
+from ..slices import scene_slices, slice_updates
 
 
 class BONEMESH_OT_hide_slices(Operator):

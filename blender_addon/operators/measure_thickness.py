@@ -6,8 +6,8 @@ from typing import ClassVar
 import bonemesh
 from bpy.types import Context, Operator
 
-from .. import selection
-from ..job import Job
+from ..jobs.job import Job
+from ..scene import selection
 from .background import BackgroundOperator
 from .on_mesh import OnSelection
 

@@ -3,7 +3,7 @@
 
 from bpy.types import Context
 
-from .. import cropping, scene_crop
+from ..crop import cropping, scene_crop
 from .step import Step
 
 

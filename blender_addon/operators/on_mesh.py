@@ -3,7 +3,8 @@
 
 from bpy.types import Context
 
-from .. import scene_crop, steps
+from ..crop import scene_crop
+from ..request import steps
 from .step import Step
 
 

@@ -6,9 +6,9 @@ from typing import ClassVar
 import numpy as np
 from bpy.types import Context, Operator
 
-from .. import selection
-from ..inputs import RefusalError
-from ..messages import one_line
+from ..jobs.messages import one_line
+from ..request.inputs import RefusalError
+from ..scene import selection
 from .on_mesh import OnSelection
 
 # Of the square of the longest side: three places nearer to a line than that make no plane.

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from bpy.types import Context, Operator
 
-from .. import scene_crop
+from ..crop import scene_crop
 from .on_crop_box import OnCropBox
 
 

@@ -8,10 +8,11 @@ import bpy
 from bpy.props import StringProperty
 from bpy.types import Context, Event, Operator
 
-from .. import provenance, scene
-from ..inputs import RefusalError, existing_path
-from ..messages import EXPECTED, one_line
-from ..provenance import Facts
+from ..jobs.messages import EXPECTED, one_line
+from ..reports import provenance
+from ..reports.provenance import Facts
+from ..request.inputs import RefusalError, existing_path
+from ..scene import meshes
 
 NO_FILE = (
     "no file is chosen; choose one such as bone.stl.json, which was saved beside a mesh"
@@ -56,7 +57,7 @@ class BONEMESH_OT_render_again(RestoresFields, Operator):
     def poll(cls, context: Context) -> bool:
         """Needs a bone that says how it was rendered."""
         active = context.active_object
-        if active is None or scene.kept_report(active, scene.OPTIONS) is None:
+        if active is None or meshes.kept_report(active, meshes.OPTIONS) is None:
             cls.poll_message_set("Make a bone active that was rendered here")
             return False
         return True
@@ -64,7 +65,7 @@ class BONEMESH_OT_render_again(RestoresFields, Operator):
     def facts(self, context: Context) -> tuple[str, Facts]:
         """From the object's properties."""
         active = context.active_object
-        return active.name, scene.kept_facts(active)
+        return active.name, meshes.kept_facts(active)
 
 
 class BONEMESH_OT_read_sidecar(RestoresFields, Operator):

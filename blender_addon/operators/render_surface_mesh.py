@@ -7,19 +7,16 @@ import bonemesh
 import bpy
 from bpy.types import Context, Operator
 
-from .. import (
-    cropping,
-    memory_box,
-    previewing,
-    scanning,
-    scene,
-    stages,
-    steps,
-    suggestions,
-    window,
-)
-from ..inputs import RenderInputs
-from ..job import Job
+from ..crop import cropping
+from ..jobs import stages
+from ..jobs.job import Job
+from ..panels import memory_box
+from ..preview import previewing
+from ..request import steps, suggestions
+from ..request.inputs import RenderInputs
+from ..scene import meshes
+from ..series import scanning
+from ..views import window
 from .background import BackgroundOperator
 
 
@@ -75,11 +72,11 @@ class BONEMESH_OT_render_surface_mesh(BackgroundOperator, Operator):
         """Adds the mesh to the scene, selected and in view."""
         previewing.dismiss()
         suggestions.forget()
-        scene.use_millimetres(context)
-        bone = scene.add_bone(
+        meshes.use_millimetres(context)
+        bone = meshes.add_bone(
             context, self._inputs.name, result, in_world_centre=self._center_in_world
         )
-        if scene.select_only(context, bone):
+        if meshes.select_only(context, bone):
             window.frame_selected(context)
         for warning in result.report["warnings"]:
             self.say("WARNING", warning)

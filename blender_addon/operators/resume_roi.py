@@ -6,9 +6,9 @@ from typing import Any, ClassVar
 import bpy
 from bpy.types import Context, Operator
 
-from .. import scene
-from ..inputs import RefusalError
-from ..messages import one_line
+from ..jobs.messages import one_line
+from ..request.inputs import RefusalError
+from ..scene import meshes
 
 # By the key of a region's setting the panel's field.
 NAMES_OR_NUMBERS = {"direction": "direction", "mirror": "plane"}
@@ -31,7 +31,7 @@ class BONEMESH_OT_resume_roi(Operator):
     def poll(cls, context: Context) -> bool:
         """Needs a region."""
         active = context.active_object
-        if active is None or scene.SOURCE not in active:
+        if active is None or meshes.SOURCE not in active:
             cls.poll_message_set("Make a region of interest active")
             return False
         return True
@@ -40,17 +40,17 @@ class BONEMESH_OT_resume_roi(Operator):
         """Sets the panel's fields, and selects the vertices in Edit Mode."""
         region = context.active_object
         try:
-            source = scene.source_of(region)
+            source = meshes.source_of(region)
         except RefusalError as error:
             self.report({"ERROR"}, one_line(error))
             return {"CANCELLED"}
-        kept = scene.kept_settings(region)
+        kept = meshes.kept_settings(region)
         context.scene.bonemesh.cut_thickness = kept["thickness_mm"]
         restore(context.scene.bonemesh_region, kept)
         if context.mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")
-        scene.select_only(context, source)
-        scene.select_vertices(context, source, kept["selected"])
+        meshes.select_only(context, source)
+        meshes.select_vertices(context, source, kept["selected"])
         bpy.ops.object.mode_set(mode="EDIT")
         return {"FINISHED"}
 

@@ -6,10 +6,12 @@ from typing import ClassVar
 import bonemesh
 from bpy.types import Context, Event, Operator
 
-from .. import previewing, scanning, scans, window
-from ..inputs import NO_CT_IMAGES
-from ..messages import EXPECTED, one_line
-from ..scans import FolderScan
+from ..jobs.messages import EXPECTED, one_line
+from ..preview import previewing
+from ..request.inputs import NO_CT_IMAGES
+from ..series import scanning, scans
+from ..series.scans import FolderScan
+from ..views import window
 
 
 class BONEMESH_OT_scan_ct_directory(Operator):

@@ -8,9 +8,11 @@ import bpy
 from bpy.props import EnumProperty
 from bpy.types import Context, Operator, OperatorProperties
 
-from .. import findings, scene, selection, window
-from ..inputs import RefusalError, as_typed
-from ..job import Job
+from ..jobs.job import Job
+from ..reports import findings
+from ..request.inputs import RefusalError, as_typed
+from ..scene import meshes, selection
+from ..views import window
 from .background import BackgroundOperator
 from .on_mesh import OnMesh
 
@@ -71,8 +73,8 @@ class BONEMESH_OT_select_faults(OnMesh, BackgroundOperator, Operator):
             return f"{source.name}: none found"
         if context.mode != "OBJECT":
             bpy.ops.object.mode_set(mode="OBJECT")
-        scene.select_only(context, placed)
-        scene.select_elements(context, placed, fault.domain, numbers)
+        meshes.select_only(context, placed)
+        meshes.select_elements(context, placed, fault.domain, numbers)
         bpy.ops.object.mode_set(mode="EDIT")
         window.frame_selected(context)
         counted = findings.counted(len(numbers), *fault.noun)

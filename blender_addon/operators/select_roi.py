@@ -7,10 +7,12 @@ import bonemesh
 import bpy
 from bpy.types import Context, Operator
 
-from .. import scene, selection, steps, suggestions, window
-from ..findings import counted
-from ..inputs import RegionInputs, region_options
-from ..job import Job
+from ..jobs.job import Job
+from ..reports.findings import counted
+from ..request import steps, suggestions
+from ..request.inputs import RegionInputs, region_options
+from ..scene import meshes, selection
+from ..views import window
 from .background import BackgroundOperator
 from .on_mesh import OnSelection
 
@@ -71,7 +73,7 @@ class RegionOperator(OnSelection, BackgroundOperator):
         suggestions.forget()
         outputs = self._inputs.outputs(len(result))
         for region, output in zip(result, outputs, strict=True):
-            scene.add_region(context, output.stem, region, self._source, self._options)
+            meshes.add_region(context, output.stem, region, self._source, self._options)
         triangles = sum(len(region.triangles) for region in result)
         last = f" to {outputs[-1].name}" if len(outputs) > 1 else ""
         said = f"{outputs[0]}{last}: {counted(triangles, 'triangle', 'triangles')}"

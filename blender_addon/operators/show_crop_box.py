@@ -5,9 +5,10 @@ from typing import ClassVar
 
 from bpy.types import Context, Operator
 
-from .. import crop_box, cropping, scene, scene_crop
-from ..inputs import NO_CT_IMAGES, RefusalError
-from ..messages import one_line
+from ..crop import crop_box, cropping, scene_crop
+from ..jobs.messages import one_line
+from ..request.inputs import NO_CT_IMAGES, RefusalError
+from ..scene import meshes
 from .step import Step
 
 
@@ -32,7 +33,7 @@ class BONEMESH_OT_show_crop_box(Step, Operator):
         except RefusalError as error:
             self.report({"ERROR"}, one_line(error))
             return {"CANCELLED"}
-        scene.use_millimetres(context)
+        meshes.use_millimetres(context)
         placed = scene_crop.place(context, crop_box.read(properties.crop, grid), grid)
-        scene.select_only(context, placed)
+        meshes.select_only(context, placed)
         return {"FINISHED"}

@@ -7,11 +7,13 @@ import bonemesh
 import bpy
 from bpy.types import Context, Operator
 
-from .. import scanning, scene, scene_slices, slice_store, slice_updates
-from ..inputs import NO_CT_IMAGES, existing_path, series_choice
-from ..job import Job
-from ..patient import shown_mesh
-from ..slice_store import Shown
+from ..jobs.job import Job
+from ..request.inputs import NO_CT_IMAGES, existing_path, series_choice
+from ..scene import meshes
+from ..series import scanning
+from ..slices import scene_slices, slice_store, slice_updates
+from ..slices.slice_store import Shown
+from ..views.patient import shown_mesh
 from .background import BackgroundOperator
 
 
@@ -52,7 +54,7 @@ class BONEMESH_OT_show_slices(BackgroundOperator, Operator):
 
     def finish(self, context: Context, result: Shown) -> str:
         """Keeps the volume and puts its slices into the scene."""
-        scene.use_millimetres(context)
+        meshes.use_millimetres(context)
         slice_store.keep(result)
         surface = bpy.data.objects.get(self._surface or "")
         scene_slices.show(context, result, surface)

@@ -6,7 +6,7 @@ from typing import ClassVar
 import bpy
 from bpy.types import Context, Operator
 
-from .. import edges
+from ..scene import edges
 from .on_mesh import OnMesh
 
 

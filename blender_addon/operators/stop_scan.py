@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from bpy.types import Context, Operator
 
-from .. import scans
+from ..series import scans
 
 
 class BONEMESH_OT_stop_scan(Operator):

@@ -5,9 +5,9 @@ from typing import ClassVar
 
 from bpy.types import Context, Operator
 
-from .. import cropping
-from ..inputs import RefusalError
-from ..messages import one_line
+from ..crop import cropping
+from ..jobs.messages import one_line
+from ..request.inputs import RefusalError
 from .on_crop_box import OnCropBox
 
 

@@ -6,8 +6,8 @@ from typing import ClassVar
 from bpy.props import EnumProperty
 from bpy.types import Context, Operator, OperatorProperties
 
-from .. import patient, views, window
-from ..patient import SIDES
+from ..views import patient, views, window
+from ..views.patient import SIDES
 
 TOOLTIPS = {
     "front": "Look the patient in the face",

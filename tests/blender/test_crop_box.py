@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from conftest import Blender
 
-from blender_addon import crop_box
-from blender_addon.crop_box import Grid
-from blender_addon.inputs import RefusalError
+from blender_addon.crop import crop_box
+from blender_addon.crop.crop_box import Grid
+from blender_addon.request.inputs import RefusalError
 
 AXIAL = np.diag([0.5, 0.5, 2.0, 1.0])
 

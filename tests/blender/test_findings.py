@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from blender_addon.findings import (
+from blender_addon.reports.findings import (
     after_care_lines,
     check_lines,
     of_rendering,

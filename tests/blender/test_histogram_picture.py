@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from blender_addon import histogram_picture as picture
+from blender_addon.preview import histogram_picture as picture
 
 
 def bars() -> np.ndarray:

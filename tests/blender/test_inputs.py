@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from blender_addon.inputs import (
+from blender_addon.request.inputs import (
     METHODS_OF_VOXELS,
     RefusalError,
     RegionInputs,

@@ -8,7 +8,7 @@ import pytest
 
 @pytest.fixture
 def job(bonemesh: ModuleType) -> ModuleType:
-    from blender_addon import job
+    from blender_addon.jobs import job
 
     return job
 

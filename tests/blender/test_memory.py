@@ -2,7 +2,7 @@
 
 import pytest
 
-from blender_addon import memory
+from blender_addon.request import memory
 
 MIB = 2.0**20
 

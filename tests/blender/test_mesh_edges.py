@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from blender_addon import mesh_edges
+from blender_addon.scene import mesh_edges
 
 
 def triangles(kind: str) -> np.ndarray:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from blender_addon import naming
+from blender_addon.request import naming
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import struct
 import numpy as np
 import pytest
 
-from blender_addon.pictures import HEADERS_BYTES, PALETTE_BYTES, picture_file
+from blender_addon.slices.pictures import HEADERS_BYTES, PALETTE_BYTES, picture_file
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (3, 4), (4, 3), (5, 7)])

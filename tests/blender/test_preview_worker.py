@@ -12,7 +12,7 @@ import pytest
 
 @pytest.fixture
 def previews(bonemesh: ModuleType) -> Iterator[ModuleType]:
-    from blender_addon import previews
+    from blender_addon.preview import previews
 
     yield previews
     assert previews.stop_all(10.0)

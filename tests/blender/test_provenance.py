@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 from conftest import Blender
 
-from blender_addon import provenance
-from blender_addon.inputs import RefusalError, RenderInputs
+from blender_addon.reports import provenance
+from blender_addon.request.inputs import RefusalError, RenderInputs
 
 FIELDS = {
     "ct_directory": "",

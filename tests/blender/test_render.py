@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from conftest import Blender
 
-from blender_addon.findings import of_rendering
+from blender_addon.reports.findings import of_rendering
 
 SETTINGS = {"hu_threshold": 400}
 

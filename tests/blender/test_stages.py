@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from blender_addon import stages
-from blender_addon.timeline import Timeline
+from blender_addon.jobs import stages
+from blender_addon.jobs.timeline import Timeline
 
 
 @pytest.mark.parametrize("options", [{}, {"triangles": 500}])

@@ -8,7 +8,7 @@ import pytest
 
 @pytest.fixture(scope="module")
 def steps(bonemesh: ModuleType) -> ModuleType:
-    from blender_addon import steps
+    from blender_addon.request import steps
 
     return steps
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from blender_addon.timeline import Timeline, left_text
+from blender_addon.jobs.timeline import Timeline, left_text
 
 
 def test_stages_count_by_their_weights() -> None:

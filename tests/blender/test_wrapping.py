@@ -2,7 +2,7 @@
 
 import pytest
 
-from blender_addon.wrapping import fitting_lines
+from blender_addon.panels.wrapping import fitting_lines
 
 TEXT = (
     "1 slice is missing (after -1.50 mm along the stack); UID 2.25.6727711009569020663"

@@ -118,7 +118,7 @@ class Desk:
 
     def running(self) -> Any:
         """The job that runs, if any."""
-        return self.module("job").running()
+        return self.module("jobs.job").running()
 
     def until_done(self, patience_s: float = 60.0) -> Steps:
         """Waits for the end of the job that runs, and for what becomes of its result."""

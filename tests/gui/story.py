@@ -74,7 +74,7 @@ def a_folder_of_ct_images_is_picked(desk: Desk) -> Steps:
         lambda: desk.properties.ct_directory.rstrip("/") == str(desk.ct),
         "the folder is in the panel",
     )
-    scans = desk.module("scanning")
+    scans = desk.module("series.scanning")
     yield from wait_until(
         lambda: scans.shown(desk.properties) and scans.shown(desk.properties).contents,
         "the folder's series are listed",
@@ -104,7 +104,7 @@ def the_file_browser() -> Any:
 
 
 def the_panel_suggests_names_and_a_folder(desk: Desk) -> Steps:
-    filled = desk.module("suggestions").filled(bpy.context)
+    filled = desk.module("request.suggestions").filled(bpy.context)
     assert filled.mesh_name == SUGGESTED, filled.mesh_name
     assert filled.mesh_directory == str(desk.ct.parent), filled.mesh_directory
     yield
@@ -184,7 +184,7 @@ def the_mesh_is_checked(desk: Desk) -> Steps:
     yield from desk.until_done(120.0)
     yield from ticks(10)
     yield from desk.picture("the check")
-    report = desk.module("scene").kept_report(bpy.data.objects[BONE], "check")
+    report = desk.module("scene.meshes").kept_report(bpy.data.objects[BONE], "check")
     assert report is not None
     assert report["printable"], report["reasons"]
     assert f"{BONE}: Printable" in desk.messages()

@@ -126,5 +126,5 @@ def main(zip: str, out: str) -> dict[str, Any]:
     choose(first)
     answer["without the other"] = drawn("BONEMESH_PT_compare")
     answer["pressed"] = pressed(first, ball("other", OTHER_RADIUS))
-    distances = import_module(f"{stage.MODULE}.distances")
+    distances = import_module(f"{stage.MODULE}.reports.distances")
     return answer | {"grey": distances.NEAR.tolist(), "blue": distances.INSIDE.tolist()}

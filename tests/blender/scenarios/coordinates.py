@@ -13,7 +13,7 @@ import stage
 def reading(target: Path, placed: Any) -> dict[str, Any]:
     """What the add-on reads of the object, and where that puts it in the world."""
     bpy.context.view_layer.update()
-    source = import_module(f"{stage.MODULE}.selection").read(placed)
+    source = import_module(f"{stage.MODULE}.scene.selection").read(placed)
     np.savez(
         target,
         vertices=source.vertices,

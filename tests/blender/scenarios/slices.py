@@ -21,7 +21,7 @@ def addon(name: str) -> Any:
 
 def kind(name: str) -> Any:
     """The object of that kind."""
-    return addon("scene_slices").found(name)
+    return addon("slices.scene_slices").found(name)
 
 
 def greys(name: str) -> np.ndarray:
@@ -53,7 +53,7 @@ def slices(out: str, label: str) -> dict[str, Any]:
     np.savez(file, **saved)
     return {
         "file": str(file),
-        "positions": {n: addon("scene_slices").position_mm(n) for n in PLANES},
+        "positions": {n: addon("slices.scene_slices").position_mm(n) for n in PLANES},
         "sizes": {n: kind(n).empty_display_size for n in PLANES},
     }
 
@@ -97,8 +97,8 @@ def edited(bone: Any) -> list[int]:
     counts.append(len(contour("axial")))
     bone.data = data
     bpy.context.view_layer.update()
-    addon("slice_updates").take_surface(bone)
-    addon("slice_updates").draw_all()
+    addon("slices.slice_updates").take_surface(bone)
+    addon("slices.slice_updates").draw_all()
     counts.append(len(contour("axial")))
     assert len(x)
     return counts
@@ -120,7 +120,7 @@ def saved(out: str) -> dict[str, Any]:
         answer["objects"] = sorted(inside.objects)
     bpy.ops.wm.open_mainfile(filepath=str(file))
     answer["opened"] = {
-        "memory": addon("slice_store").current() is None,
+        "memory": addon("slices.slice_store").current() is None,
         "pictures": [kind(n).data is None for n in PLANES],
         "panel": drawn("BONEMESH_PT_slices"),
     }
@@ -155,9 +155,9 @@ def main(zip: str, out: str, ct: str) -> dict[str, Any]:
     answer["locks"] = {n: list(kind(n).lock_location) for n in PLANES}
     answer |= {"moved": moved(out), "bone": bone_moved(bone, out)}
     answer["edited"] = edited(bone)
-    kept = addon("slice_store").current()
+    kept = addon("slices.slice_store").current()
     bpy.ops.bonemesh.show_slices()
-    answer["read once"] = addon("slice_store").current() is kept
+    answer["read once"] = addon("slices.slice_store").current() is kept
     answer["saved"] = saved(out)
     properties = bpy.context.scene.bonemesh
     bpy.data.objects["bone"]["bonemesh_series_uid"] = "1.2.3"
@@ -166,7 +166,7 @@ def main(zip: str, out: str, ct: str) -> dict[str, Any]:
     answer["left"] = [
         [o.name for o in bpy.data.objects if "Slice" in o.name or "Contour" in o.name],
         [i.name for i in bpy.data.images if i.name.startswith("CT")],
-        addon("slice_store").current() is None,
+        addon("slices.slice_store").current() is None,
     ]
     handlers = bpy.app.handlers.depsgraph_update_post
     count = len(handlers)

@@ -13,7 +13,7 @@ UNDO = ("EXEC_DEFAULT", True)
 def state() -> dict[str, Any]:
     """What the axial slice shows."""
     return {
-        "position": addon("scene_slices").position_mm("axial"),
+        "position": addon("slices.scene_slices").position_mm("axial"),
         "grey": greys("axial").astype(int).sum().item(),
         "points": len(contour("axial")),
     }
@@ -38,13 +38,15 @@ def main(zip: str, out: str, ct: str) -> dict[str, Any]:
     bpy.data.objects["bone"].name = "another name"
     bpy.context.view_layer.update()
     bpy.context.scene.bonemesh_slices.axial = 40.0
-    answer["renamed"] = state() | {"surface": addon("slice_updates").surface().name}
+    answer["renamed"] = state() | {
+        "surface": addon("slices.slice_updates").surface().name
+    }
     bpy.ops.ed.undo_push(message="renamed")
     bpy.data.objects.remove(bpy.data.objects["another name"])
     bpy.context.view_layer.update()
     answer["deleted"] = state()
     answer["panel"] = [
-        addon("slice_updates").surface() is None,
+        addon("slices.slice_updates").surface() is None,
         [bool(np.any(greys(name))) for name in PLANES],
     ]
     bpy.ops.ed.undo_push(message="deleted")

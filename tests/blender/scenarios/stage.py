@@ -173,7 +173,7 @@ def event(kind: str, value: str = "NOTHING") -> Any:
 
 def addon_job() -> Any:
     """The add-on's module of running jobs."""
-    return import_module(f"{MODULE}.job")
+    return import_module(f"{MODULE}.jobs.job")
 
 
 def addon_watches() -> list[Any]:
@@ -183,12 +183,12 @@ def addon_watches() -> list[Any]:
 
 def addon_scans() -> Any:
     """The add-on's module of scans."""
-    return import_module(f"{MODULE}.scans")
+    return import_module(f"{MODULE}.series.scans")
 
 
 def addon_scanning() -> Any:
     """The add-on's module that begins scans, as it is where there is a window."""
-    scanning = import_module(f"{MODULE}.scanning")
+    scanning = import_module(f"{MODULE}.series.scanning")
     scanning.is_watched = True
     return scanning
 
@@ -196,7 +196,7 @@ def addon_scanning() -> Any:
 def addon_previewing() -> Any:
     """The add-on's module of the preview, as it is where there is a window."""
     addon_scanning()
-    return import_module(f"{MODULE}.previewing")
+    return import_module(f"{MODULE}.preview.previewing")
 
 
 def front(placed: Any) -> Any:

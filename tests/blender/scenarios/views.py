@@ -24,7 +24,7 @@ def seen(placed: Any) -> dict[str, Any]:
     area = view()
     space = area.spaces.active
     region = next(r for r in area.regions if r.type == "WINDOW")
-    left_px, right_px = import_module(f"{stage.MODULE}.views").covered_px(area)
+    left_px, right_px = import_module(f"{stage.MODULE}.views.views").covered_px(area)
     answer = {}
     for side in SIDES:
         assert bpy.ops.bonemesh.view_patient(side=side) == {"FINISHED"}
@@ -57,13 +57,13 @@ def seen(placed: Any) -> dict[str, Any]:
 
 def letters(placed: Any) -> dict[str, list[float]]:
     """Where each letter stands."""
-    directions = import_module(f"{stage.MODULE}.directions")
+    directions = import_module(f"{stage.MODULE}.views.directions")
     return {letter: list(place) for letter, place in directions.places(placed).items()}
 
 
 def hidden(placed: Any, looks: Any) -> str:
     """The letters that are not drawn for whoever looks along a direction."""
-    directions = import_module(f"{stage.MODULE}.directions")
+    directions = import_module(f"{stage.MODULE}.views.directions")
     kept = directions.seen_letters(placed, Vector(looks).normalized())
     return "".join(sorted(set("RLAPSI") - set(kept)))
 
