@@ -17,7 +17,10 @@ from ..scene import meshes, scene_distances, selection
 from .background import BackgroundOperator
 from .on_mesh import OnMesh
 
-NO_OTHER = "select the mesh to compare with, too: click it, then Shift-click the one that is to be coloured"
+NO_OTHER = (
+    "select the mesh to compare with, too: in the list at the top right click its name, then with Ctrl held "
+    "that of the one to be coloured"
+)
 SEVERAL_OTHERS = (
     "more than two meshes are selected; select the two that are to be compared"
 )

@@ -17,8 +17,8 @@ KEYS = (
         "Turn the view: drag with the middle mouse button; the wheel comes nearer",
     ),
     (
-        "MOUSE_RMB_DRAG",
-        "Lasso: in Edit Mode (Tab) hold Ctrl and drag with the right mouse button",
+        "MOUSE_LMB_DRAG",
+        "Lasso: press Select with Lasso and drag with the left mouse button; Tab ends it",
     ),
     ("EVENT_ESC", "Stop what is running"),
 )
