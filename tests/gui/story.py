@@ -243,7 +243,8 @@ def the_bone_is_exported(desk: Desk) -> Steps:
     yield from desk.sidebar.unfold("bonemesh_output.format")
     yield from desk.picture("the export")
     yield from desk.sidebar.find("bonemesh_output.format")
-    yield from desk.sidebar.hand.press("WHEELDOWNMOUSE", ctrl=True)
+    desk.sidebar.hand.event("WHEELDOWNMOUSE", "PRESS", ctrl=True)
+    yield from ticks(10)
     assert desk.window.scene.bonemesh_output.format == "3mf"
     yield from desk.sidebar.fill("bonemesh_output.file_name", EXPORTED)
     yield from desk.sidebar.click("bonemesh.export_mesh")
