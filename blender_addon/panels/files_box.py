@@ -12,4 +12,4 @@ def draw(layout: Any, context: Any, folder: str, name: str) -> None:
     """Draws it; suggested names are always free."""
     if folder and name and suggestions.is_there(folder, name):
         stem = without_suffix(name)
-        draw_text(layout, context, f"{stem}.stl will be replaced", icon="ERROR")
+        draw_text(layout, context, f"{stem}.stl will be replaced", icon="INFO")

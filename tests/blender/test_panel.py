@@ -147,7 +147,7 @@ def test_a_file_that_would_be_replaced_is_named_before_it_is(
 ) -> None:
     told = without_boxes(panel["with a mesh"])
     button = told.index("Render Surface Mesh")
-    assert told[button - 1] == "! bone.stl will be replaced"
+    assert told[button - 1] == "bone.stl will be replaced"
     assert told[told.index("Select Region of Interest") - 1] == "[roi_name]"
 
 
