@@ -17,9 +17,13 @@ def parts() -> tuple[ModuleType, ...]:
     """What is registered, in this order, where the compiled library loads."""
     from . import operators
     from .panels import (
+        advanced_panel,
+        after_care_panel,
         compare_panel,
+        crop_panel,
         export_panel,
         help_panel,
+        region_panel,
         segment_ct,
         slices_panel,
         views_panel,
@@ -46,6 +50,10 @@ def parts() -> tuple[ModuleType, ...]:
         operators,
         previewing,
         segment_ct,
+        crop_panel,
+        region_panel,
+        after_care_panel,
+        advanced_panel,
         views_panel,
         slices_panel,
         compare_panel,

@@ -9,7 +9,7 @@ from bpy.types import Context, Panel, UILayout
 from ..operators.compare_meshes import BONEMESH_OT_compare_meshes, other_meshes
 from ..reports import distances
 from ..scene import meshes, scene_distances
-from .segment_ct import Part
+from .part import Part
 from .text import draw_text
 
 

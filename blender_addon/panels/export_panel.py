@@ -7,7 +7,7 @@ from bpy.types import Context, Panel, UILayout
 from ..operators.choose_mesh_directory import BONEMESH_OT_choose_mesh_directory
 from ..operators.export_mesh import BONEMESH_OT_export_mesh
 from ..request import suggestions
-from .segment_ct import Part
+from .part import Part
 
 
 class BONEMESH_PT_export(Part, Panel):

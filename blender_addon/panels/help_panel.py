@@ -7,7 +7,7 @@ import bpy
 from bpy.types import Context, Panel, UILayout
 
 from ..library import addon_version
-from .segment_ct import Part
+from .part import Part
 from .text import draw_text
 
 GUIDE = Path(__file__).parents[1] / "guide" / "index.html"

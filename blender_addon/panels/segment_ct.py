@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The tab "Segment CT" in the sidebar of the 3D view."""
 
-from typing import Any, ClassVar
+from typing import Any
 
 import bpy
 from bpy.types import Context, Panel, UILayout
@@ -11,18 +11,10 @@ from ..operators.cancel import BONEMESH_OT_cancel
 from ..operators.check_mesh import BONEMESH_OT_check_mesh
 from ..operators.choose_ct_directory import BONEMESH_OT_choose_ct_directory
 from ..operators.choose_mesh_directory import BONEMESH_OT_choose_mesh_directory
-from ..operators.measure_thickness import BONEMESH_OT_measure_thickness
-from ..operators.mirror_roi import BONEMESH_OT_mirror_roi
-from ..operators.plane_from_vertices import BONEMESH_OT_plane_from_vertices
-from ..operators.remove_crop_box import BONEMESH_OT_remove_crop_box
 from ..operators.render_again import BONEMESH_OT_read_sidecar, BONEMESH_OT_render_again
 from ..operators.render_surface_mesh import BONEMESH_OT_render_surface_mesh
-from ..operators.resume_roi import BONEMESH_OT_resume_roi
 from ..operators.select_roi import BONEMESH_OT_select_roi
-from ..operators.show_crop_box import BONEMESH_OT_show_crop_box
-from ..operators.use_crop_box import BONEMESH_OT_use_crop_box
 from ..request import suggestions
-from ..request.inputs import uses_edge_points
 from . import (
     contents_box,
     files_box,
@@ -109,143 +101,11 @@ def draw_progress(layout: UILayout, running: job.Job) -> None:
     column.operator(BONEMESH_OT_cancel.bl_idname, icon="X")
 
 
-class Part:
-    """Mixed into the parts below the panel, which are folded in at first."""
-
-    bl_parent_id = "BONEMESH_PT_segment_ct"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Segment CT"
-    bl_options: ClassVar[set[str]] = {"DEFAULT_CLOSED"}
-
-    def draw(self, context: Context) -> None:
-        """Draws the part's fields with their names before them."""
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        self.draw_fields(context, layout)
-
-    def draw_fields(self, context: Context, layout: UILayout) -> None:
-        """Draws the fields."""
-        raise NotImplementedError
-
-
-class BONEMESH_PT_crop(Part, Panel):
-    """Which part of the images is rendered, as a box in the 3D view."""
-
-    bl_label = "Crop"
-
-    def draw_fields(self, context: Context, layout: UILayout) -> None:
-        """Draws the field and what moves the box."""
-        column = layout.column()
-        column.prop(context.scene.bonemesh, "crop")
-        column.operator(BONEMESH_OT_show_crop_box.bl_idname, icon="MESH_CUBE")
-        column.operator(BONEMESH_OT_use_crop_box.bl_idname)
-        column.operator(BONEMESH_OT_remove_crop_box.bl_idname)
-
-
-class BONEMESH_PT_region(Part, Panel):
-    """How the region is cut, and its counterpart on the other side."""
-
-    bl_label = "Region"
-
-    def draw_fields(self, context: Context, layout: UILayout) -> None:
-        """Draws thickness, cut and mirror."""
-        properties = context.scene.bonemesh_region
-        column = layout.column()
-        column.operator(BONEMESH_OT_measure_thickness.bl_idname)
-        if properties.measured:
-            column.label(text=properties.measured, icon="DRIVER_DISTANCE")
-        column = layout.column()
-        column.prop(properties, "method")
-        cut = column.column()
-        cut.active = properties.method == "solid"
-        cut.prop(properties, "direction")
-        if properties.direction == "outward":
-            cut.prop(properties, "clearance")
-        if properties.direction == "given":
-            cut.prop(properties, "direction_numbers")
-        cut.prop(properties, "hidden")
-        cut.prop(properties, "separate")
-        column.operator(BONEMESH_OT_resume_roi.bl_idname)
-        column = layout.column()
-        column.active = properties.method == "solid"
-        column.prop(properties, "plane")
-        if properties.plane == "given":
-            column.prop(properties, "plane_numbers")
-        column.operator(BONEMESH_OT_plane_from_vertices.bl_idname)
-        column.prop(properties, "mirror_back")
-        column.operator(BONEMESH_OT_mirror_roi.bl_idname)
-
-
-class BONEMESH_PT_after_care(Part, Panel):
-    """What is done to the mesh after it was made; little unless asked for."""
-
-    bl_label = "After-Care"
-
-    def draw_fields(self, context: Context, layout: UILayout) -> None:
-        """Draws the steps in the order in which they are done."""
-        properties = context.scene.bonemesh
-        column = layout.column()
-        column.prop(properties, "fill_holes")
-        if properties.fill_holes == "small":
-            column.prop(properties, "holes_mm")
-        column.prop(properties, "remove_islands")
-        if properties.remove_islands == "small":
-            column.prop(properties, "islands_mm3")
-        column.prop(properties, "fill_cavities")
-        if properties.fill_cavities == "small":
-            column.prop(properties, "cavities_mm3")
-        column.prop(properties, "smooth_mm")
-        column.prop(properties, "reduce_triangles")
-        if properties.reduce_triangles == "number":
-            column.prop(properties, "triangles")
-        elif properties.reduce_triangles == "error":
-            column.prop(properties, "decimate_mm")
-
-
-class BONEMESH_PT_advanced(Part, Panel):
-    """What is right as it stands for most images."""
-
-    bl_label = "Advanced"
-
-    def draw_fields(self, context: Context, layout: UILayout) -> None:
-        """Draws the settings of the next rendering."""
-        properties = context.scene.bonemesh
-        column = layout.column()
-        column.prop(properties, "series")
-        column.prop(properties, "one_series")
-        column.prop(properties, "damp_metal")
-        column.prop(properties, "method")
-        table = column.row()
-        table.active = not uses_edge_points(properties)
-        table.prop(properties, "leave_out_table")
-        edges = column.column()
-        edges.active = uses_edge_points(properties)
-        edges.prop(properties, "sigma")
-        edges.prop(properties, "sample_percent")
-        sampler = edges.row()
-        sampler.enabled = properties.sample_percent < 100.0
-        sampler.prop(properties, "sampler")
-        column.prop(properties, "center_in_world")
-
-
-CLASSES = (
-    BONEMESH_PT_segment_ct,
-    BONEMESH_PT_crop,
-    BONEMESH_PT_region,
-    BONEMESH_PT_after_care,
-    BONEMESH_PT_advanced,
-)
-
-
 def register() -> None:
-    """Adds the panels."""
-    for cls in CLASSES:
-        bpy.utils.register_class(cls)
+    """Adds the panel."""
+    bpy.utils.register_class(BONEMESH_PT_segment_ct)
 
 
 def unregister() -> None:
-    """Takes the panels away."""
-    for cls in reversed(CLASSES):
-        bpy.utils.unregister_class(cls)
+    """Takes the panel away."""
+    bpy.utils.unregister_class(BONEMESH_PT_segment_ct)

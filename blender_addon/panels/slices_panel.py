@@ -10,7 +10,7 @@ from ..operators.hide_slices import BONEMESH_OT_hide_slices
 from ..operators.show_slices import BONEMESH_OT_show_slices
 from ..slices import scene_slices, slice_store, slice_updates
 from ..slices.slice_store import PLANES, Shown
-from .segment_ct import Part
+from .part import Part
 from .text import draw_text
 
 LETTERS = {"axial": "z", "coronal": "y", "sagittal": "x"}

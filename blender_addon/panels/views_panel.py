@@ -8,7 +8,7 @@ from bpy.types import Context, Panel, UILayout
 
 from ..operators.view_patient import BONEMESH_OT_view_patient
 from ..views.patient import SIDES
-from .segment_ct import Part
+from .part import Part
 
 
 class BONEMESH_PT_views(Part, Panel):
