@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 
 import bpy
 
+from ..scene.selection import CENTRE_MM
 from ..series import scanning
 from . import naming
 from .inputs import RefusalError, file_stem
@@ -78,7 +79,10 @@ def free_mesh_name(properties: Any, folder: str) -> str:
 def free_roi_name(context: Any, folder: str) -> str:
     """After the mesh that it is cut from."""
     active = context.active_object
-    if active is None or active.type != "MESH" or not folder:
+    is_mesh = active is not None and active.type == "MESH"
+    # Not the cube that a new scene begins with.
+    is_meant = is_mesh and (active.mode == "EDIT" or CENTRE_MM in active)
+    if not is_meant or not folder:
         return ""
     return free(f"{naming.as_stem(active.name)} region", folder)
 
