@@ -153,3 +153,16 @@ def test_what_is_no_plane_is_refused(point: tuple, normal: tuple) -> None:
     mesh = bonemesh.render(bonemesh.phantom("tube", coarser=3.0))
     with pytest.raises(bonemesh.ArgumentError):
         bonemesh.section(mesh, point, normal)
+
+
+def test_a_section_does_not_depend_on_those_before() -> None:
+    mesh = bonemesh.render(bonemesh.phantom("femur", coarser=3.0))
+    middle = mesh.vertices.mean(axis=0, dtype=float)
+    first = bonemesh.section(mesh, middle, (0, 0, 1))
+    bonemesh.section(mesh, middle, (1, 0, 0))
+    again = bonemesh.section(mesh, middle, (0, 0, 1))
+    fresh = bonemesh.Mesh(mesh.vertices, mesh.triangles)
+    for lines in (again, bonemesh.section(fresh, middle, (0, 0, 1))):
+        assert len(lines) == len(first) > 0
+        for one, other in zip(lines, first, strict=True):
+            np.testing.assert_array_equal(one, other)
