@@ -15,6 +15,7 @@ PICTURES = [
     ("check", "the check", "panel", None),
     ("lasso", "the lasso", "area", 800),
     ("region", "the region", "area", 800),
+    ("compare", "the comparison", "area", 800),
 ]
 COLOURS = 160  # enough for Blender's grey and one bone; a third of the size
 

@@ -115,7 +115,7 @@ class Region:
                 yield from ticks(UNFOLDING)
                 # A field's own name may stand to its left.
                 right = region.x + COLUMNS[1] * region.width
-                for below in range(y - ROW_PX, y - 4 * ROW_PX, -ROW_PX // 2):
+                for below in range(y - ROW_PX, y - 6 * ROW_PX, -ROW_PX // 2):
                     yield from self.hand.move(right, max(below, region.y + EDGE_PX))
                     if name in self.under_mouse():
                         return

@@ -239,6 +239,29 @@ def the_region_under_the_lasso_becomes_a_solid(desk: Desk) -> Steps:
     assert share > 0.005, f"only {share:.2%} of the view shows the region"
 
 
+def the_bone_is_compared_with_the_region(desk: Desk) -> Steps:
+    yield from desk.to_the_middle()
+    hand = desk.canvas.hand
+    x, y = hand.place
+    yield from hand.click()
+    bone, region = bpy.data.objects[BONE], bpy.data.objects[REGION]
+    yield from wait_until(lambda: bpy.context.object == region, "the region is clicked")
+    yield from hand.move(x, y + 2 * LASSO_PX)
+    yield from hand.press("LEFTMOUSE", shift=True)
+    yield from wait_until(lambda: bpy.context.object == bone, "the bone is clicked")
+    yield from desk.sidebar.unfold("bonemesh.compare_meshes")
+    yield from desk.sidebar.click("bonemesh.compare_meshes")
+    yield from wait_until(
+        lambda: "compared" in " ".join(bone.keys()), "the meshes are compared", 60.0
+    )
+    yield from desk.until_done()
+    yield from ticks(20)
+    shown = yield from desk.picture("the comparison")
+    share = share_of_region(shown, desk.parts()["view"])
+    assert share > 0.1, f"only {share:.1%} of the view is coloured as far away"
+    desk.window.scene.bonemesh_compare.show = False
+
+
 def the_bone_is_exported(desk: Desk) -> Steps:
     yield from desk.sidebar.unfold("bonemesh_output.format")
     yield from desk.picture("the export")
@@ -273,6 +296,7 @@ STORY = [
     the_mesh_is_checked,
     a_region_is_selected_with_the_lasso,
     the_region_under_the_lasso_becomes_a_solid,
+    the_bone_is_compared_with_the_region,
     the_bone_is_exported,
     quitting_while_something_is_rendered_ends_blender,
 ]
