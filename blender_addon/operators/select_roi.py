@@ -5,9 +5,11 @@ from typing import Any, ClassVar
 
 import bonemesh
 import bpy
+from bpy.props import EnumProperty, FloatProperty
 from bpy.types import Context, Operator
 
 from ..jobs.job import Job
+from ..properties.region_properties import DIRECTIONS, METHODS
 from ..reports.findings import counted
 from ..request import steps, suggestions
 from ..request.inputs import RegionInputs, region_options
@@ -29,22 +31,23 @@ class RegionOperator(OnSelection, BackgroundOperator):
             suggestions.filled(context)
         )
 
+    def fields(self, context: Context) -> tuple[Any, Any]:
+        """`scene.bonemesh` and `scene.bonemesh_region`, or what stands for them."""
+        return suggestions.filled(context, anew=True), context.scene.bonemesh_region
+
     def mirror_options(self, _context: Context) -> dict[str, Any]:
         """Keyword arguments of bonemesh.select_roi for the other side."""
         return {}
 
     def prepare(self, context: Context) -> Job[list[bonemesh.Mesh]]:
         """Checks the panel's fields and copies the active object's mesh and selection."""
-        self._inputs = inputs = RegionInputs.read(
-            suggestions.filled(context, anew=True), bpy.path.abspath
-        )
+        fields, region_fields = self.fields(context)
+        self._inputs = inputs = RegionInputs.read(fields, bpy.path.abspath)
         context.view_layer.update()  # a script may just have moved the object
         self._source = source = selection.read_with_selection(context.active_object)
         view = window.view_direction(context)
         self._options = options = {
-            **region_options(
-                context.scene.bonemesh_region, source.patient_direction(view)
-            ),
+            **region_options(region_fields, source.patient_direction(view)),
             **self.mirror_options(context),
         }
 
@@ -87,7 +90,46 @@ class RegionOperator(OnSelection, BackgroundOperator):
 class BONEMESH_OT_select_roi(RegionOperator, Operator):
     """Cut the region under the selected vertices out as its own mesh, save it as STL and add it to the scene"""
 
+    # Blender's Adjust Last Operation calls `execute` with other values for these; else they are the panel's.
     bl_idname = "bonemesh.select_roi"
     bl_label = "Select Region of Interest"
-    bl_options: ClassVar[set[str]] = {"UNDO"}
+    bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
     title = "Select Region of Interest"
+
+    thickness: FloatProperty(
+        name="Thickness of Cut (mm)",
+        description="How deep the region is cut",
+        min=0.0,
+        default=5.0,
+        options={"SKIP_SAVE"},
+    )
+    method: EnumProperty(
+        name="Method",
+        description="How the region is found",
+        items=METHODS,
+        options={"SKIP_SAVE"},
+    )
+    direction: EnumProperty(
+        name="Direction",
+        description="Which way the region is cut",
+        items=DIRECTIONS,
+        options={"SKIP_SAVE"},
+    )
+
+    def fields(self, context: Context) -> tuple[Any, Any]:
+        """The panel's, but for what is given to the operator."""
+        fields, region_fields = super().fields(context)
+        panel = {
+            "thickness": fields.cut_thickness,
+            "method": region_fields.method,
+            "direction": region_fields.direction,
+        }
+        for name, value in panel.items():
+            if not self.properties.is_property_set(name):
+                setattr(self, name, value)
+        return (
+            suggestions.Filled(fields, cut_thickness=self.thickness),
+            suggestions.Filled(
+                region_fields, method=self.method, direction=self.direction
+            ),
+        )

@@ -23,9 +23,9 @@ ASKED_EVERY_S = (
 
 
 class Filled:
-    """`scene.bonemesh` with what is empty in it filled in."""
+    """A group of properties, such as `scene.bonemesh`, with other values for some."""
 
-    def __init__(self, properties: Any, **filled: str) -> None:
+    def __init__(self, properties: Any, **filled: Any) -> None:
         self._properties = properties
         self._filled = filled
 

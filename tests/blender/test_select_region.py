@@ -73,3 +73,11 @@ def test_a_region_says_where_it_comes_from(
     assert properties["bonemesh_version"] == bonemesh.__version__
     (series,) = bonemesh.find_series(ct)
     assert properties["bonemesh_series_uid"] == series.uid
+
+
+def test_a_region_can_be_adjusted(blender: Blender, ct: Path) -> None:
+    # That the window's Adjust Last Operation does it is part of the real window's story.
+    answer = blender.run("adjust", ct=ct)
+    assert answer["options"] == ["REGISTER", "UNDO"]
+    # What the operator was given once is not taken again when the button is pressed.
+    assert answer["regions"] == {"region": [2.0, "through"], "second": [3.0, "normal"]}

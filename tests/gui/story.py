@@ -230,6 +230,29 @@ def the_region_under_the_lasso_becomes_a_solid(desk: Desk) -> Steps:
     yield from desk.until_done()
     assert (desk.meshes / f"{REGION}.stl").stat().st_size > 1000
     yield from ticks(10)
+
+
+def adjusting_the_last_operation_cuts_the_region_anew(desk: Desk) -> Steps:
+    """As its box in the corner of the view does when a value in it is changed."""
+    manager = bpy.context.window_manager
+    last = manager.operators[-1]
+    assert last.bl_idname == "BONEMESH_OT_select_roi", last.bl_idname
+    window = manager.windows[0]
+    area = next(area for area in window.screen.areas if area.type == "VIEW_3D")
+    view = next(region for region in area.regions if region.type == "WINDOW")
+    thickness = last.properties.thickness
+    # What Python holds of an operator does not outlive its being done again.
+    for wanted in (thickness / 2.0, thickness):
+        manager.operators[-1].properties.thickness = wanted
+        with bpy.context.temp_override(window=window, area=area, region=view):
+            bpy.ops.ed.undo_redo()
+        yield from ticks(20)
+        assert bpy.data.objects[REGION]["bonemesh_thickness_mm"] == wanted
+        assert len([o for o in bpy.data.objects if "bonemesh_source" in o]) == 1
+        assert bpy.context.mode == "EDIT_MESH"
+
+
+def the_region_is_seen_on_the_bone(desk: Desk) -> Steps:
     yield from desk.to_the_middle()
     yield from desk.canvas.hand.press("TAB")
     yield from wait_until(lambda: bpy.context.mode == "OBJECT", "Object Mode")
@@ -296,6 +319,8 @@ STORY = [
     the_mesh_is_checked,
     a_region_is_selected_with_the_lasso,
     the_region_under_the_lasso_becomes_a_solid,
+    adjusting_the_last_operation_cuts_the_region_anew,
+    the_region_is_seen_on_the_bone,
     the_bone_is_compared_with_the_region,
     the_bone_is_exported,
     quitting_while_something_is_rendered_ends_blender,
