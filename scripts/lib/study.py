@@ -15,6 +15,7 @@ from typing import Any
 
 import bonemesh
 import numpy as np
+import study_model_pictures
 import study_models
 import study_pictures
 import study_sampling
@@ -76,6 +77,9 @@ def models(report: Report) -> None:
     ):
         say(table.__name__)
         report.add(table())
+    say("pictures of the models")
+    for picture in study_model_pictures.pictures(report.folder):
+        report.add(picture)
     say("curved shape")
     report.add(curved(report.folder))
     report.add(curved_targeted(report.folder))

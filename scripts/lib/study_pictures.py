@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 Array = np.ndarray[Any, Any]
 
 BACKGROUND = "#edf0f5"
-VIEW_FROM = np.array([0.62, -1.0, 0.22])
+VIEW_FROM = (0.62, -1.0, 0.22)
 SIDE_PX = 520
 DPI = 110
 # The ends of a heat map's colours: so many of a hundred distances are below it.
@@ -81,7 +81,9 @@ def lines(
 
 
 def meshes(
-    shown: Mapping[str, tuple[bonemesh.Mesh, Array | None]], target: Path
+    shown: Mapping[str, tuple[bonemesh.Mesh, Array | None]],
+    target: Path,
+    view_from: tuple[float, float, float] = VIEW_FROM,
 ) -> None:
     """Meshes beside one another, coloured by signed distance where there is one."""
     known = [np.abs(d) for _, d in shown.values() if d is not None]
@@ -110,7 +112,7 @@ def meshes(
         plotter.add_text(name, font_size=9, color="black")
         middle = np.array(shape.center)
         plotter.camera.focal_point = middle
-        plotter.camera.position = middle + VIEW_FROM * shape.length * 2.0
+        plotter.camera.position = middle + np.array(view_from) * shape.length * 2.0
         plotter.camera.up = (0.0, 0.0, 1.0)
     with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
         made = Path(scratch) / "picture.png"
