@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 
 import bonemesh
 import bpy
-from bpy.props import EnumProperty, FloatProperty
+from bpy.props import EnumProperty, FloatProperty, StringProperty
 from bpy.types import Context, Operator
 
 from ..jobs.job import Job
@@ -75,8 +75,10 @@ class RegionOperator(OnSelection, BackgroundOperator):
         """Adds the regions where they were taken from; the selection and the active object stay."""
         suggestions.forget()
         outputs = self._inputs.outputs(len(result))
-        for region, output in zip(result, outputs, strict=True):
+        self._placed = [
             meshes.add_region(context, output.stem, region, self._source, self._options)
+            for region, output in zip(result, outputs, strict=True)
+        ]
         triangles = sum(len(region.triangles) for region in result)
         last = f" to {outputs[-1].name}" if len(outputs) > 1 else ""
         said = f"{outputs[0]}{last}: {counted(triangles, 'triangle', 'triangles')}"
@@ -115,6 +117,19 @@ class BONEMESH_OT_select_roi(RegionOperator, Operator):
         items=DIRECTIONS,
         options={"SKIP_SAVE"},
     )
+
+    made: StringProperty(
+        description="The regions that this operator added, one name a line",
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+
+    def finish(self, context: Context, result: list[bonemesh.Mesh]) -> str:
+        """In place of what the same operator made before: what Edit Mode undoes has no objects in it."""
+        for name in self.made.splitlines():
+            meshes.remove_region(name)
+        said = super().finish(context, result)
+        self.made = "\n".join(placed.name for placed in self._placed)
+        return said
 
     def fields(self, context: Context) -> tuple[Any, Any]:
         """The panel's, but for what is given to the operator."""

@@ -110,6 +110,16 @@ def add_region(
     return placed
 
 
+def remove_region(name: str) -> None:
+    """Takes a region away that is still in the scene."""
+    region = bpy.data.objects.get(name)
+    if region is not None and SOURCE in region:
+        mesh = region.data
+        bpy.data.objects.remove(region)
+        if mesh.users == 0:
+            bpy.data.meshes.remove(mesh)
+
+
 def kept_facts(bone: Any) -> dict[str, Any]:
     """How a bone was rendered, by the names that the library's report has."""
     keys = ("version", "method", "threshold_hu", "series_uid")
