@@ -35,6 +35,12 @@ class RegionOperator(OnSelection, BackgroundOperator):
         """`scene.bonemesh` and `scene.bonemesh_region`, or what stands for them."""
         return suggestions.filled(context, anew=True), context.scene.bonemesh_region
 
+    def take_back(self) -> None:
+        """Takes away what the operator made before, if it is done again."""
+
+    def remember(self, names: list[str]) -> None:
+        """Notes the regions that were added."""
+
     def mirror_options(self, _context: Context) -> dict[str, Any]:
         """Keyword arguments of bonemesh.select_roi for the other side."""
         return {}
@@ -75,10 +81,12 @@ class RegionOperator(OnSelection, BackgroundOperator):
         """Adds the regions where they were taken from; the selection and the active object stay."""
         suggestions.forget()
         outputs = self._inputs.outputs(len(result))
-        self._placed = [
+        self.take_back()
+        placed = [
             meshes.add_region(context, output.stem, region, self._source, self._options)
             for region, output in zip(result, outputs, strict=True)
         ]
+        self.remember([region.name for region in placed])
         triangles = sum(len(region.triangles) for region in result)
         last = f" to {outputs[-1].name}" if len(outputs) > 1 else ""
         said = f"{outputs[0]}{last}: {counted(triangles, 'triangle', 'triangles')}"
@@ -123,13 +131,14 @@ class BONEMESH_OT_select_roi(RegionOperator, Operator):
         options={"HIDDEN", "SKIP_SAVE"},
     )
 
-    def finish(self, context: Context, result: list[bonemesh.Mesh]) -> str:
-        """In place of what the same operator made before: what Edit Mode undoes has no objects in it."""
+    def take_back(self) -> None:
+        """Takes away what it made before: what Edit Mode undoes has no objects in it."""
         for name in self.made.splitlines():
             meshes.remove_region(name)
-        said = super().finish(context, result)
-        self.made = "\n".join(placed.name for placed in self._placed)
-        return said
+
+    def remember(self, names: list[str]) -> None:
+        """Notes what it made."""
+        self.made = "\n".join(names)
 
     def fields(self, context: Context) -> tuple[Any, Any]:
         """The panel's, but for what is given to the operator."""
