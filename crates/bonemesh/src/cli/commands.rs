@@ -13,7 +13,7 @@ use super::arguments::{Check, CloudArguments, Command, Info, MeshArguments, Rend
 use super::mesh_file::FileArguments;
 use super::output::Answer;
 use super::phantom::PhantomArguments;
-use super::{after_care, compare, histogram, region, text};
+use super::{after_care, check_text, compare, histogram, region, text};
 use crate::render::{Rendered, mesh_cloud, point_cloud, render};
 use crate::source::{Reading, Source};
 use crate::thresholds::choose_threshold;
@@ -123,7 +123,7 @@ fn run_check(arguments: &Check, task: &Task) -> Result<Answer, Error> {
     let checked = check_walls(&mesh, arguments.threads, task)?;
     let answer = Answer::new(
         &checked.report,
-        text::checked(&checked.report, &arguments.mesh),
+        check_text::checked(&checked.report, &arguments.mesh),
     );
     let Some(path) = &arguments.walls else {
         return Ok(answer);

@@ -5,6 +5,7 @@
 
 mod after_care;
 mod arguments;
+mod check_text;
 mod commands;
 mod compare;
 mod histogram;
