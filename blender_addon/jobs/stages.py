@@ -14,7 +14,12 @@ CLOSED = {
     "containment": 0.66,
     "check": 0.42,
 }
-DECIMATED = {"decimate": 10.0, "sort triangles": 0.15, "intersections": 0.46}
+DECIMATED = {
+    "decimate": 10.0,
+    "sort triangles": 0.15,
+    "intersections": 0.46,
+    "deviation": 0.50,
+}
 WRITTEN = {"write": 0.10}
 STAGES = {
     "isosurface": {

@@ -270,7 +270,7 @@ fn largest_distance_mm(
     task: &Task,
 ) -> Result<Option<f64>, Error> {
     let tree = TriangleTree::new(left, task)?;
-    task.begin("distances", given.vertices_mm().len());
+    task.begin("deviation", given.vertices_mm().len());
     let chunks = given.vertices_mm().par_chunks(STRIDE).map(|places| {
         task.advance(places.len())?;
         let distances = places
