@@ -35,7 +35,8 @@ pub(super) fn divide_neighbours(
         }
         needles = self::needles(vertices_mm, triangles, task)?;
     }
-    Ok(given - needles.len())
+    // What rounding leaves of a divided neighbour may be one more.
+    Ok(given.saturating_sub(needles.len()))
 }
 
 fn needles(
