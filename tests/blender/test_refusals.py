@@ -1,6 +1,7 @@
 """What cannot be done is refused with one line that names the remedy, and leaves nothing behind."""
 
 import pytest
+import refusal_texts
 
 # What is asked for, and words that its answer must have.
 CASES = [
@@ -9,6 +10,8 @@ CASES = [
     ("ct picker: a file that is not there", ["does not exist", "choose"]),
     ("mesh picker: a file", ["file.txt", "folder"]),
     ("mesh picker: nothing there", ["does not exist", "choose"]),
+    ("ct picker: no choice", ["no folder is chosen", "choose"]),
+    ("mesh picker: no choice", ["no folder is chosen", "choose"]),
     ("no ct folder", ["Select File Directory of CT Images"]),
     ("ct images are a file without any", ["file.txt", "not a DICOM file", "folder"]),
     ("ct folder is gone", ["does not exist"]),
@@ -49,6 +52,37 @@ CASES = [
     ("thickness 0", ["Thickness of Cut (mm)"]),
     ("a camera is active", ["active"]),
     ("mesh without vertices", ["no vertex"]),
+    ("no view to cut along", ["no 3D view", "choose another direction"]),
+    ("region of a mesh with fewer vertices", ["fewer vertices", "select on it anew"]),
+    ("region of a mesh that is gone", ["for the tools", "is gone", "undo"]),
+    ("region that does not say how", ["no longer says", "select on the bone anew"]),
+    ("nothing to compare", ["Select two meshes"]),
+    ("nothing to export", ["Make the mesh object", "active"]),
+    ("nothing with faults", ["Make the mesh object", "active"]),
+    ("nothing to render again", ["Make a bone active"]),
+    ("nothing to look at", ["no mesh to look at"]),
+    ("no slices to remove", ["no CT slices"]),
+    ("no crop box to use", ["Show Crop Box"]),
+    ("no crop box to remove", ["Show Crop Box"]),
+    ("no images for a crop box", ["Select File Directory of CT Images"]),
+    ("no images for slices", ["Select File Directory of CT Images"]),
+    ("no images to look at again", ["Select File Directory of CT Images"]),
+    ("images for a crop box not looked at", ["Look Again"]),
+    ("crop box away from the images", ["no voxel", "Show Crop Box"]),
+    ("crop box without a place", ["not a box", "Show Crop Box"]),
+    ("compared with nothing", ["select the mesh to compare with", "Ctrl"]),
+    ("compared with two", ["more than two", "select the two"]),
+    ("compared in Edit Mode", ["leave Edit Mode", "Tab"]),
+    ("compared and changed", ["three", "changed meanwhile", "press the button"]),
+    ("faults of a changed mesh", ["one", "changed meanwhile", "press the button"]),
+    ("plane through a line", ["in a line", "select three that do not"]),
+    ("settings of no file", ["no file is chosen", "bone.stl.json"]),
+    ("settings of a folder", ["no file is chosen", "bone.stl.json"]),
+    ("settings of another file", ["other.json", "choose a file such as"]),
+    ("settings of another version", ["Method", "newer", "another version"]),
+    ("exported as a device", ["con", "reserved by Windows", "another name"]),
+    ("exported where nothing can be written", ["cannot be written to", "another"]),
+    ("checked while rendering", ["Render Surface Mesh", "running", "press Cancel"]),
 ]
 
 
@@ -67,6 +101,17 @@ def test_every_refusal_is_looked_at(refusals: dict[str, str]) -> None:
     assert {c for c in refusals if not c.startswith("files")} == {
         case for case, _ in CASES
     }
+
+
+def test_every_refusal_of_the_addon_was_seen(refusals: dict[str, str]) -> None:
+    of_addon = refusal_texts.of_addon()
+    assert len(of_addon) > 40, "the source is not read any more"
+    unseen = [
+        f"{refusal.place}: {refusal.pattern.pattern}"
+        for refusal in of_addon
+        if not any(refusal.pattern.search(message) for message in refusals.values())
+    ]
+    assert not unseen
 
 
 def test_a_refused_request_leaves_no_file(refusals: dict[str, str]) -> None:

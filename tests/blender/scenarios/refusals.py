@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 import bpy
+import refusals_of_tools
 import stage
 
 LONG_AGO = "there/is/nothing/here"
@@ -58,6 +59,10 @@ def pickers(folder: Path) -> dict[str, str]:
         ),
         "mesh picker: nothing there": stage.message_of(
             ops.choose_mesh_directory, directory=LONG_AGO
+        ),
+        "ct picker: no choice": stage.message_of(ops.choose_ct_directory, directory=""),
+        "mesh picker: no choice": stage.message_of(
+            ops.choose_mesh_directory, directory=""
         ),
     }
 
@@ -181,4 +186,12 @@ def main(zip: str, out: str, ct: str) -> dict[str, Any]:
     messages["files after the refused regions"] = ", ".join(
         sorted(p.name for p in meshes.iterdir())
     )
+    messages |= tools(folder)
     return {"messages": messages}
+
+
+def tools(folder: Path) -> dict[str, str]:
+    """What the other operators refuse, with a bone in the scene."""
+    bpy.context.scene.bonemesh.mesh_name = "for the tools"
+    bpy.ops.bonemesh.render_surface_mesh()
+    return refusals_of_tools.main(folder, bpy.context.view_layer.objects.active)
