@@ -7,24 +7,24 @@ use bonemesh_mesh::{Decimation, Islands, check_topology, read_mesh};
 use bonemesh_task::{Task, pool};
 use clap::Args;
 
+use super::after_care_values as values;
 use super::arguments::{count, length_mm, mesh_file};
 use super::mesh_file::FileArguments;
 use super::output::Answer;
 use super::text;
-use crate::Error;
-use crate::after_care::{self, AfterCare, Cavities, Holes, care_for};
+use crate::{AfterCare, Cavities, Error, Holes, care_for};
 
 #[derive(Debug, Args)]
 pub(super) struct AfterCareArguments {
     /// Fill `all` holes of an open mesh, or those that are no longer than this.
-    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = after_care::holes)]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = values::holes)]
     fill_holes: Option<Holes>,
     /// Keep only the `largest` island of the mesh, or all of at least this volume, or the bones at
     /// these places (mm, in the mesh's frame; several with a semicolon between them).
-    #[arg(long, value_name = "MM3|X,Y,Z", allow_negative_numbers = true, value_parser = after_care::islands)]
+    #[arg(long, value_name = "MM3|X,Y,Z", allow_negative_numbers = true, value_parser = values::islands)]
     islands: Option<Islands>,
     /// Fill `all` cavities inside the bone, or those of at most this volume.
-    #[arg(long, value_name = "MM3", allow_negative_numbers = true, value_parser = after_care::cavities)]
+    #[arg(long, value_name = "MM3", allow_negative_numbers = true, value_parser = values::cavities)]
     fill_cavities: Option<Cavities>,
     /// Smooth, and move no vertex further than this.
     #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = length_mm)]

@@ -4,6 +4,7 @@
 //! Progress goes to stderr and only to a terminal. Ctrl-C stops the work and leaves no file.
 
 mod after_care;
+mod after_care_values;
 mod arguments;
 mod check_text;
 mod commands;
