@@ -32,6 +32,7 @@ const NOTICE_FILES: [&str; 7] = [
 ];
 
 fn main() -> Result<()> {
+    bind_own_symbols();
     // Asked when it runs: a cached build of this script may come from a checkout elsewhere.
     let workspace = Path::new(&env::var("CARGO_MANIFEST_DIR")?).join("../..");
     println!("cargo::rerun-if-changed=build.rs");
@@ -50,6 +51,18 @@ fn main() -> Result<()> {
     let notices = notices(&shipped_packages(&metadata)?)?;
     fs::write(folder.join("THIRD_PARTY_LICENSES.txt"), notices)?;
     Ok(())
+}
+
+/// Makes calls inside of the module stay inside of it, where the loader would let others in.
+///
+/// The JPEG 2000 decoder has the C names of `OpenJPEG`'s own library. In a program that is linked with that
+/// library, as distributions build Blender, the loader would give ours the other's functions, whose
+/// structures are laid out differently: nothing is decoded, or the program dies.
+fn bind_own_symbols() {
+    let is_elf = env::var("CARGO_CFG_TARGET_OS").is_ok_and(|os| os == "linux");
+    if is_elf {
+        println!("cargo::rustc-cdylib-link-arg=-Wl,-Bsymbolic");
+    }
 }
 
 /// What cargo knows of the packages and of who needs whom, for the platform that is built for.
