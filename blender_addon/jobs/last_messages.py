@@ -15,6 +15,17 @@ class Message(NamedTuple):
 
 
 messages: list[Message] = []
+_said_at: dict[int, str] = {}
+"""By an error's place in `messages` the step that was next when it was first shown."""
+
+
+def of_step(step: str) -> list[Message]:
+    """What still matters when `step` is next: an error is forgotten once the user has gone on."""
+    return [
+        message
+        for place, message in enumerate(messages)
+        if message.kind != "ERROR" or _said_at.setdefault(place, step) == step
+    ]
 
 
 def say(kind: str, text: str) -> None:
@@ -25,3 +36,4 @@ def say(kind: str, text: str) -> None:
 def clear() -> None:
     """Forgets them: another job begins, or another file."""
     messages.clear()
+    _said_at.clear()

@@ -7,6 +7,7 @@ import bpy
 
 from ..preview import previewing
 from ..series import scanning
+from ..views import window
 from . import background
 from .cancel import BONEMESH_OT_cancel
 from .check_mesh import BONEMESH_OT_check_mesh
@@ -69,6 +70,7 @@ def stop_jobs() -> None:
     background.stop_all(bpy.context)
     scanning.stop()
     previewing.stop()
+    window.stop()
 
 
 def register() -> None:

@@ -9,9 +9,11 @@ looks at the thread, and after its end calls `finish` on the main thread, where 
 from __future__ import annotations
 
 import logging
+from contextlib import AbstractContextManager, nullcontext
 from typing import Any
 
 import bonemesh
+import bpy
 
 from ..jobs import last_messages
 from ..jobs.job import BusyError, Job, refuse_while_running
@@ -41,10 +43,19 @@ class Watch:
     def close(self, context: Any) -> None:
         """Takes the timer and the text in the status bar away."""
         if self in watches:
-            watches.remove(self)
-            context.window_manager.event_timer_remove(self._timer)
+            self._forget(context)
             window.clear_status(context)
             window.redraw_views(context)
+
+    def close_with_window(self, context: Any) -> None:
+        """The same where Blender is about to free the window: until it has, nothing may be asked of that."""
+        if self in watches:
+            self._forget(context)
+            window.clear_status_soon()
+
+    def _forget(self, context: Any) -> None:
+        watches.remove(self)
+        context.window_manager.event_timer_remove(self._timer)
 
 
 watches: list[Watch] = []
@@ -110,6 +121,7 @@ class BackgroundOperator(Step):
             job.start()
         except EXPECTED as error:
             return self._failed(error)
+        self._scene = context.scene.name
         self._watch = Watch(job, context)
         context.window_manager.modal_handler_add(self)
         window.show_status(context, status_text(job))
@@ -134,7 +146,8 @@ class BackgroundOperator(Step):
             return {"PASS_THROUGH"}
         self._watch.close(context)
         try:
-            message = self.finish(context, job.result())
+            with in_scene(context, self._scene):
+                message = self.finish(context, job.result())
         except bonemesh.Cancelled:
             return self._stopped()
         except Exception as error:
@@ -147,7 +160,7 @@ class BackgroundOperator(Step):
     def cancel(self, context: Any) -> None:
         """Called by Blender when it ends the operator itself: another file, a closed window."""
         self._watch.job.cancel()
-        self._watch.close(context)
+        self._watch.close_with_window(context)
 
     def say(self, kind: str, text: str) -> None:
         """Reports, and keeps for the panel."""
@@ -161,6 +174,17 @@ class BackgroundOperator(Step):
     def _failed(self, error: BaseException) -> set[str]:
         self.say("ERROR", one_line(error))
         return {"CANCELLED"}
+
+
+def in_scene(context: Any, name: str) -> AbstractContextManager[Any]:
+    """The scene that a job was begun in, as long as it is there: the user may look at another one now."""
+    scene = bpy.data.scenes.get(name)
+    if scene is None or scene == context.scene:
+        return nullcontext()
+    override: AbstractContextManager[Any] = context.temp_override(
+        scene=scene, view_layer=scene.view_layers[0]
+    )
+    return override
 
 
 def status_text(job: Job) -> str:

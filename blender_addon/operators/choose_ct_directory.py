@@ -2,15 +2,13 @@
 """bonemesh.choose_ct_directory: picks the folder of CT images, or one file with a whole volume."""
 
 import os
-from pathlib import Path
 from typing import ClassVar
 
-import bonemesh
 import bpy
 from bpy.props import StringProperty
 from bpy.types import Context, Event, Operator
 
-from ..request import inputs
+from ..request import ct_images, inputs
 from .choose_directory import NO_FOLDER, DirectoryPicker
 
 
@@ -44,15 +42,6 @@ class BONEMESH_OT_choose_ct_directory(DirectoryPicker, Operator):
         if not self.filepath:
             return super().chosen()
         path = inputs.existing_path(bpy.path.abspath(self.filepath), missing=NO_FOLDER)
-        if path.is_dir() or is_volume(path):
+        if path.is_dir() or ct_images.is_volume(path):
             return self.filepath
         return os.path.join(path.parent, "")
-
-
-def is_volume(file: Path) -> bool:
-    """Whether the file is a volume by itself, and no slice of one."""
-    try:
-        bonemesh.scan(file)
-    except (bonemesh.BonemeshError, OSError):
-        return False
-    return True

@@ -25,10 +25,12 @@ class BONEMESH_OT_export_mesh(OnMesh, BackgroundOperator, Operator):
     def prepare(self, context: Context) -> Job[Path]:
         """Checks the fields and copies the active object's mesh."""
         active = context.active_object
+        suggestions.forget()  # what is on the disk now
+        folder = suggestions.filled(context).mesh_directory
         inputs = ExportInputs.read(
             context.scene.bonemesh_output,
-            suggestions.filled(context).mesh_directory,
-            active.name,
+            folder,
+            suggestions.export_name(context, folder) or active.name,
             bpy.path.abspath,
         )
         context.view_layer.update()  # a script may just have moved the object
@@ -46,6 +48,8 @@ class BONEMESH_OT_export_mesh(OnMesh, BackgroundOperator, Operator):
                 progress=job.note_progress,
                 cancel=job.cancel_token,
             )
+            # It would tell of the mesh whose file was just replaced.
+            Path(f"{inputs.output}.json").unlink(missing_ok=True)
             return inputs.output
 
         self._triangles = len(source.triangles)
@@ -53,5 +57,6 @@ class BONEMESH_OT_export_mesh(OnMesh, BackgroundOperator, Operator):
 
     def finish(self, context: Context, result: Path) -> str:
         """Says where the file is."""
+        suggestions.forget()
         frame = context.scene.bonemesh_output.frame
         return f"{result}: {self._triangles:,} triangles, mm, {frame}"

@@ -17,7 +17,7 @@ class OnMesh(Step):
     @classmethod
     def missing(cls, context: Context) -> str | None:
         """Needs a mesh."""
-        active = context.active_object
+        active = getattr(context, "active_object", None)  # a timer has none
         is_mesh = active is not None and active.type == "MESH"
         if not is_mesh or scene_crop.TAG in active:
             return cls.remedy

@@ -8,11 +8,13 @@ import bpy
 from bpy.props import StringProperty
 from bpy.types import Context, Event, Operator
 
+from ..jobs import last_messages
 from ..jobs.messages import EXPECTED, one_line
 from ..reports import provenance
 from ..reports.provenance import Facts
 from ..request.inputs import RefusalError, existing_path
 from ..scene import meshes
+from ..series import scanning
 
 NO_FILE = (
     "no file is chosen; choose one such as bone.stl.json, which was saved beside a mesh"
@@ -35,15 +37,27 @@ class RestoresFields:
         except EXPECTED as error:
             self.report({"ERROR"}, one_line(error))
             return {"CANCELLED"}
+        last_messages.clear()
         missing = provenance.without_field(facts)
         if missing:
-            text = f"the panel has no field for {', '.join(missing)}; use the command bonemesh render"
-            self.report({"WARNING"}, text)
-        self.report(
-            {"INFO"},
-            f"The fields are as they were for {name}; press Render Surface Mesh",
+            self.say(
+                "WARNING",
+                f"the panel has no field for {', '.join(missing)}; use the command bonemesh render",
+            )
+        if scanning.has_failed(context.scene.bonemesh):
+            self.say(
+                "WARNING",
+                f"{name} was made of other images than those above; choose their folder",
+            )
+        self.say(
+            "INFO", f"The fields are as they were for {name}; press Render Surface Mesh"
         )
         return {"FINISHED"}
+
+    def say(self, kind: str, text: str) -> None:
+        """Reports, and keeps for the panel."""
+        last_messages.say(kind, text)
+        self.report({kind}, text)
 
 
 class BONEMESH_OT_render_again(RestoresFields, Operator):

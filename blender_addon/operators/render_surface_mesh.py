@@ -14,10 +14,11 @@ from ..panels import memory_box
 from ..preview import previewing
 from ..request import steps, suggestions
 from ..request.inputs import RenderInputs
-from ..scene import meshes
+from ..scene import meshes, scene_distances
 from ..series import scanning
-from ..views import window
+from ..views import views
 from .background import BackgroundOperator
+from .saving import save
 
 
 class BONEMESH_OT_render_surface_mesh(BackgroundOperator, Operator):
@@ -57,13 +58,7 @@ class BONEMESH_OT_render_surface_mesh(BackgroundOperator, Operator):
                 progress=job.note_progress,
                 cancel=job.cancel_token,
             )
-            job.stop_if_cancelled()
-            mesh.save(
-                inputs.output,
-                sidecar=True,
-                progress=job.note_progress,
-                cancel=job.cancel_token,
-            )
+            self._not_saved = save(mesh, inputs.output, job)
             return mesh
 
         return Job("Render Surface Mesh", work, stages.of_rendering(inputs.options))
@@ -76,8 +71,13 @@ class BONEMESH_OT_render_surface_mesh(BackgroundOperator, Operator):
         bone = meshes.add_bone(
             context, self._inputs.name, result, in_world_centre=self._center_in_world
         )
+        scene_distances.set_shown(context, False)  # a new bone has none
         if meshes.select_only(context, bone):
-            window.frame_selected(context)
+            views.frame(context, bone)
         for warning in result.report["warnings"]:
             self.say("WARNING", warning)
-        return f"{self._inputs.output}: {len(result.triangles):,} triangles"
+        triangles = f"{len(result.triangles):,} triangles"
+        if self._not_saved is not None:
+            self.say("WARNING", self._not_saved)
+            return f"{bone.name}: {triangles}"
+        return f"{self._inputs.output}: {triangles}"

@@ -13,10 +13,11 @@ from ..properties.region_properties import DIRECTIONS, METHODS
 from ..reports.findings import counted
 from ..request import steps, suggestions
 from ..request.inputs import RegionInputs, region_options
-from ..scene import meshes, selection
+from ..scene import meshes, scene_distances, selection
 from ..views import window
 from .background import BackgroundOperator
 from .on_mesh import OnSelection
+from .saving import save
 
 
 class RegionOperator(OnSelection, BackgroundOperator):
@@ -68,11 +69,12 @@ class RegionOperator(OnSelection, BackgroundOperator):
                 **watched,
             )
             regions = found if isinstance(found, list) else [found]
-            for region, output in zip(
-                regions, inputs.outputs(len(regions)), strict=True
-            ):
-                job.stop_if_cancelled()
-                region.save(output, sidecar=True, **watched)
+            outputs = inputs.outputs(len(regions))
+            answers = [
+                save(region, output, job)
+                for region, output in zip(regions, outputs, strict=True)
+            ]
+            self._not_saved = next((why for why in answers if why), None)
             return regions
 
         return Job(self.title, work)
@@ -86,10 +88,14 @@ class RegionOperator(OnSelection, BackgroundOperator):
             meshes.add_region(context, output.stem, region, self._source, self._options)
             for region, output in zip(result, outputs, strict=True)
         ]
+        scene_distances.set_shown(context, False)  # a new region has none
         self.remember([region.name for region in placed])
         triangles = sum(len(region.triangles) for region in result)
         last = f" to {outputs[-1].name}" if len(outputs) > 1 else ""
-        said = f"{outputs[0]}{last}: {counted(triangles, 'triangle', 'triangles')}"
+        if self._not_saved is not None:
+            self.say("WARNING", self._not_saved)
+        where = outputs[0] if self._not_saved is None else placed[0].name
+        said = f"{where}{last}: {counted(triangles, 'triangle', 'triangles')}"
         dropped = result[0].report.get("dropped_pieces", 0)
         if dropped:
             pieces = counted(dropped, "piece", "pieces")
@@ -110,6 +116,7 @@ class BONEMESH_OT_select_roi(RegionOperator, Operator):
         name="Thickness of Cut (mm)",
         description="How deep the region is cut",
         min=0.0,
+        soft_min=0.5,  # dragging to less would take long
         default=5.0,
         options={"SKIP_SAVE"},
     )
@@ -130,6 +137,10 @@ class BONEMESH_OT_select_roi(RegionOperator, Operator):
         description="The regions that this operator added, one name a line",
         options={"HIDDEN", "SKIP_SAVE"},
     )
+    file: StringProperty(
+        description="What the file that it wrote is called",
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
 
     def take_back(self) -> None:
         """Takes away what it made before: what Edit Mode undoes has no objects in it."""
@@ -148,11 +159,16 @@ class BONEMESH_OT_select_roi(RegionOperator, Operator):
             "method": region_fields.method,
             "direction": region_fields.direction,
         }
+        if not self.made:
+            self.file = fields.roi_name
         for name, value in panel.items():
             if not self.properties.is_property_set(name):
                 setattr(self, name, value)
         return (
-            suggestions.Filled(fields, cut_thickness=self.thickness),
+            # Done again, it writes the same file again.
+            suggestions.Filled(
+                fields, cut_thickness=self.thickness, roi_name=self.file
+            ),
             suggestions.Filled(
                 region_fields, method=self.method, direction=self.direction
             ),

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """bonemesh.show_crop_box: a box around the part of the images that is rendered."""
 
+from contextlib import suppress
 from typing import ClassVar
 
 from bpy.types import Context, Operator
@@ -28,6 +29,8 @@ class BONEMESH_OT_show_crop_box(Step, Operator):
     def execute(self, context: Context) -> set[str]:
         """Places the box and makes it active."""
         properties = context.scene.bonemesh
+        with suppress(RefusalError):  # a box that left the images comes back
+            cropping.use_moved_box(context)
         try:
             grid = cropping.grid_of(properties)
         except RefusalError as error:

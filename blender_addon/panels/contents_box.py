@@ -93,7 +93,10 @@ def title(series: bonemesh.Series, contents: bonemesh.Scan) -> str:
     elif series.number in contents.alternatives:
         mark = " (could be meant as well)"
     name = series.description or "no description"
-    return f"{series.number}: {name}, {series.slices} slices, {spacing} mm{mark}"
+    folder = f", in {series.files[0].parent.name}" if series.files else ""
+    return (
+        f"{series.number}: {name}, {series.slices} slices, {spacing} mm{folder}{mark}"
+    )
 
 
 def draw_advice(

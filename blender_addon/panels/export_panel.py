@@ -7,6 +7,7 @@ from bpy.types import Context, Panel, UILayout
 from ..operators.choose_mesh_directory import BONEMESH_OT_choose_mesh_directory
 from ..operators.export_mesh import BONEMESH_OT_export_mesh
 from ..request import suggestions
+from . import files_box
 from .part import Part
 
 
@@ -23,9 +24,14 @@ class BONEMESH_PT_export(Part, Panel):
         column.prop(properties, "format")
         column.prop(properties, "frame")
         column.prop(properties, "as_placed")
-        name = "" if active is None else active.name
+        folder = suggestions.filled(context).mesh_directory.strip()
+        name = suggestions.export_name(context, folder)
+        if active is not None and not name:
+            name = active.name
         column.prop(properties, "file_name", placeholder=name)
-        if not suggestions.filled(context).mesh_directory.strip():
+        named = properties.file_name.strip()
+        files_box.draw(layout, context, folder, named, properties.format)
+        if not folder:
             layout.operator(BONEMESH_OT_choose_mesh_directory.bl_idname)
         layout.operator(BONEMESH_OT_export_mesh.bl_idname, icon="EXPORT")
 

@@ -8,8 +8,10 @@ from ..request.inputs import without_suffix
 from .text import draw_text
 
 
-def draw(layout: Any, context: Any, folder: str, name: str) -> None:
+def draw(
+    layout: Any, context: Any, folder: str, name: str, ending: str = "stl"
+) -> None:
     """Draws it; suggested names are always free."""
-    if folder and name and suggestions.is_there(folder, name):
-        stem = without_suffix(name)
-        draw_text(layout, context, f"{stem}.stl will be replaced", icon="INFO")
+    stem = without_suffix(name, ending)
+    if folder and stem and suggestions.is_there(folder, stem, ending):
+        draw_text(layout, context, f"{stem}.{ending} will be replaced", icon="INFO")

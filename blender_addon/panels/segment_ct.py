@@ -66,6 +66,9 @@ def draw_surface(column: UILayout, context: Context, filled: Any) -> None:
     )
     files_box.draw(column, context, filled.mesh_directory, filled.mesh_name)
     memory_box.draw(column, context)
+    if properties.crop.strip():
+        # Seen where it matters: the part Crop may be folded in.
+        column.prop(properties, "crop", text="Only", icon="MESH_CUBE")
     column.operator(BONEMESH_OT_render_surface_mesh.bl_idname)
     row = column.row(align=True)
     row.operator(BONEMESH_OT_render_again.bl_idname)

@@ -10,15 +10,18 @@ another file and the switch end the preview; the next choice brings it back.
 from __future__ import annotations
 
 import logging
+from itertools import product
 from typing import Any
 
 import bpy
+import numpy as np
 from bpy.app.handlers import persistent
+from mathutils import Vector
 
 from ..jobs import last_messages
 from ..scene import meshes
 from ..series import scanning, scans
-from ..views import window
+from ..views import views, window
 from . import histogram_icon, previews, scene_preview
 from .previews import Reading, SeriesRequest, Surface, Wanted
 
@@ -151,7 +154,8 @@ def hand_over(context: Any, surface: Surface) -> None:
         state.is_framed = True
         meshes.use_millimetres(context)
         vertices = surface.mesh.vertices
-        window.frame_box(context, vertices.min(axis=0), vertices.max(axis=0))
+        ends = np.stack([vertices.min(axis=0), vertices.max(axis=0)])
+        views.frame_places(context, [Vector(corner) for corner in product(*ends.T)])
 
 
 def chosen_series(properties: Any) -> SeriesRequest | None:
@@ -214,6 +218,7 @@ def after_loading(*_: Any) -> None:
     """Another file: nothing was chosen in it yet; one that Blender saved by itself may hold a preview."""
     state.is_framed = True
     last_messages.clear()
+    scans.forget()  # folders may have gone since
     for reading in previews.running():
         reading.job.cancel()
         previews.forget(reading.request.path)

@@ -13,6 +13,7 @@ from bpy.props import (
 from bpy.types import Context, PropertyGroup
 
 from ..preview import previewing
+from ..request import ct_images
 from ..series import scanning
 
 METHODS = [
@@ -103,11 +104,16 @@ REDUCED_TRIANGLES = [
 
 
 def ct_images_changed(self: "BonemeshProperties", _context: Context) -> None:
-    """Looks at what was chosen; the series of another folder is no choice in this one."""
+    """Looks at what was chosen; series and crop of other images mean nothing in these."""
+    folder = ct_images.folder_of_slice(bpy.path.abspath(self.ct_directory))
+    if folder is not None:
+        self.ct_directory = folder  # which calls this again
+        return
     request = scanning.request_of(self)
     source = "" if request is None else f"{request.path} {request.one_series}"
     if self.series_source not in ("", source):
         self.series = ""
+        self.crop = ""
     self.series_source = source
     if scanning.is_watched:
         scanning.begin(self)
@@ -170,7 +176,7 @@ class BonemeshProperties(PropertyGroup):
     )
     sigma: FloatProperty(
         name="Edge Smoothing",
-        description="Sigma of the Gaussian in the edge detection, in pixels; 0 smooths nothing",
+        description="How far the images are smoothed before edges are looked for, in pixels (sigma of a Gaussian); 0 smooths nothing. Not for isosurfaces and labelled tetrahedra, which use the voxels as they are",
         default=1.0,
         min=0.0,
         max=10.0,
@@ -178,7 +184,7 @@ class BonemeshProperties(PropertyGroup):
     )
     sample_percent: FloatProperty(
         name="Points Kept",
-        description="Part of the edge points that is meshed; 100 keeps them all",
+        description="Part of the edge points that is meshed; 100 keeps them all. Not for isosurfaces and labelled tetrahedra, which use the voxels themselves",
         default=100.0,
         min=0.1,
         max=100.0,
@@ -207,7 +213,7 @@ class BonemeshProperties(PropertyGroup):
     )
     fill_holes: EnumProperty(
         name="Fill Holes",
-        description="Which holes of the mesh are closed; isosurfaces and labelled tetrahedra have none",
+        description="Which holes of the mesh are closed when it is rendered; isosurfaces and labelled tetrahedra have none",
         items=FILLED_HOLES,
     )
     holes_mm: FloatProperty(
@@ -288,7 +294,7 @@ class BonemeshProperties(PropertyGroup):
     )
     crop: StringProperty(
         name="Crop",
-        description="Part of the images to use, as columns, rows, slices counted from 0, ends excluded: 0:255,0:345,2:90; empty uses all",
+        description="Part of the images that is rendered; Show Crop Box sets it with the mouse, Remove Crop Box uses all again. Typed: first:end of columns, rows and slices, counted from 0, the end left out, such as 0:255,0:345,2:90; empty uses all",
         update=preview_changed,
     )
     center_in_world: BoolProperty(

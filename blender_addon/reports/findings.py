@@ -128,9 +128,16 @@ def faults_found(report: Report) -> dict[str, str]:
     }
 
 
+THIN_MM = 0.4  # the line that most printers of plastic draw
+
+
 def verdict(report: Report) -> str:
-    """Whether the mesh can be printed, in two words."""
-    return "Printable" if report.get("printable") else "Not printable"
+    """Whether the mesh can be printed, in a few words."""
+    if not report.get("printable"):
+        return "Not printable"
+    thinnest = report.get("thinnest_wall_mm")
+    is_thin = thinnest is not None and thinnest < THIN_MM
+    return f"Printable, but for walls below {THIN_MM} mm" if is_thin else "Printable"
 
 
 def check_lines(report: Report) -> list[str]:

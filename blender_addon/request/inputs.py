@@ -12,6 +12,7 @@ from typing import Any
 
 RESERVED_ON_WINDOWS = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 NOT_IN_NAMES = re.compile(r'[\x00-\x1f\x7f/\\:*?"<>|]')
+LONGEST_NAME = 200  # bytes: file systems take 255, and endings are added
 WHOLE_NUMBER = re.compile(r"[0-9]{1,9}")
 METHODS_OF_VOXELS = ("isosurface", "labelled")
 """They need no edge points, so what chooses these does not apply."""
@@ -110,11 +111,9 @@ class ExportInputs:
     ) -> ExportInputs:
         """From `scene.bonemesh_output`; an object without a file's name goes by its own."""
         directory = output_directory(resolve(mesh_directory))
-        name, ending = properties.file_name.strip(), f".{properties.format}"
-        if name.lower().endswith(ending):
-            name = name[: -len(ending)]
+        name = without_suffix(properties.file_name, properties.format)
         stem = file_stem(name or object_name, "Filename")
-        return cls(directory / f"{stem}{ending}", properties.frame)
+        return cls(directory / f"{stem}.{properties.format}", properties.frame)
 
 
 def region_options(
@@ -219,10 +218,11 @@ def output_directory(path: str) -> Path:
     return directory
 
 
-def without_suffix(name: str) -> str:
-    """`name` without blanks around it and without `.stl`, which is added again to the file."""
+def without_suffix(name: str, ending: str = "stl") -> str:
+    """`name` without blanks around it and without its ending, which is added again to the file."""
     name = name.strip()
-    return name[:-4].rstrip() if name.lower().endswith(".stl") else name
+    has_it = name.lower().endswith(f".{ending}")
+    return name[: -len(ending) - 1].rstrip() if has_it else name
 
 
 def file_stem(name: str, label: str) -> str:
@@ -233,6 +233,10 @@ def file_stem(name: str, label: str) -> str:
     if NOT_IN_NAMES.search(stem) or stem.startswith(".") or stem.endswith("."):
         raise RefusalError(
             f'{label} "{stem}" is no plain file name; use no folders, no leading or final dot and none of / \\ : * ? " < > |'
+        )
+    if len(stem.encode()) > LONGEST_NAME:
+        raise RefusalError(
+            f"{label} is too long for the name of a file; take {LONGEST_NAME} letters at most"
         )
     if RESERVED_ON_WINDOWS.fullmatch(stem):
         raise RefusalError(

@@ -17,14 +17,18 @@ NO_SELECTION = "no vertex is selected; draw around some with the lasso (Select w
 class Scene(NamedTuple):
     """What the steps depend on besides the panel's fields."""
 
+    has_images: bool
+    """Whether the chosen images can be rendered, as far as that is known."""
     has_bone: bool
-    """Whether a surface was made."""
+    """Whether a surface was made of them."""
     active: str
-    """`bone`, `region`, `mesh` (another one) or empty."""
+    """`bone`, `region`, `crop` (the box), `mesh` (another one) or empty."""
     is_edited: bool
     """Whether the active mesh is in Edit Mode."""
     selected: int
     """Its selected vertices in Edit Mode."""
+    is_cut: bool
+    """Whether a region was cut from so many of them."""
 
 
 def missing_for_surface(properties: Any) -> str | None:
@@ -57,6 +61,10 @@ def next_step(properties: Any, seen: Scene) -> str:
     """One line: what to do now."""
     if not properties.ct_directory.strip():
         return "Select the folder of CT images"
+    if not seen.has_images:
+        return "Select a folder that holds CT images, or a series of it"
+    if seen.active == "crop":
+        return "Move and scale the box, then press Render Surface Mesh"
     if not seen.has_bone:
         return before_surface(properties)
     if seen.active == "region":
@@ -81,6 +89,8 @@ def before_region(properties: Any, seen: Scene) -> str:
         return "Press Select with Lasso, to choose a region of the bone"
     if seen.selected == 0:
         return "Draw around the region with the lasso"
+    if seen.is_cut:
+        return "Press Tab with the mouse over the view, to see the region"
     if not properties.roi_name.strip():
         return "Give a Segmented Mesh Filename"
     return "Press Select Region of Interest"

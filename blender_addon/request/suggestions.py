@@ -87,6 +87,17 @@ def free_roi_name(context: Any, folder: str) -> str:
     return free(f"{naming.as_stem(active.name)} region", folder)
 
 
+def export_name(context: Any, folder: str) -> str:
+    """What an exported file is called where no name is typed: after its object and frame, replacing none."""
+    output, active = context.scene.bonemesh_output, context.active_object
+    if active is None or output.file_name.strip() or not scanning.is_watched:
+        return ""
+    stem = naming.as_stem(active.name)
+    if output.frame != "LPS":
+        stem += f" {output.frame}"
+    return naming.free(stem, lambda name: is_there(folder, name, output.format))
+
+
 def free(stem: str, folder: str) -> str:
     """A name that no file in the folder and no object has."""
 
@@ -96,13 +107,13 @@ def free(stem: str, folder: str) -> str:
     return naming.free(stem, is_taken)
 
 
-def is_there(folder: str, name: str) -> bool:
-    """Whether the folder has the STL file of that name."""
+def is_there(folder: str, name: str, ending: str = "stl") -> bool:
+    """Whether the folder has the file of that name."""
     try:
         stem = file_stem(name, "")
     except RefusalError:
         return False
-    path = Path(bpy.path.abspath(folder), f"{stem}.stl")
+    path = Path(bpy.path.abspath(folder), f"{stem}.{ending}")
     return bool(lately(("file", path), path.exists))
 
 

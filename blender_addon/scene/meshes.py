@@ -65,6 +65,7 @@ def add_bone(
     context: Any, name: str, bone: bonemesh.Mesh, *, in_world_centre: bool
 ) -> Any:
     """Adds a rendered mesh, at its place in the patient or at the world's centre."""
+    retire(context, name)
     placed = add_object(context, name, bone, "Bonemesh Bone", BONE_COLOUR)
     if in_world_centre:
         placed.location = (0.0, 0.0, 0.0)
@@ -79,6 +80,19 @@ def add_bone(
     keep_report(placed, AFTER_CARE, of_rendering(report))
     context.view_layer.update()
     return placed
+
+
+def retire(context: Any, name: str) -> None:
+    """Hides the bone of that name, whose file was just replaced, under another; its regions go on knowing it."""
+    old = context.view_layer.objects.get(name)
+    is_bone = old is not None and f"bonemesh_{OPTIONS}" in old and SOURCE not in old
+    if not is_bone or old.mode == "EDIT" or old.library is not None:
+        return
+    old.name = f"{name} before"
+    for region in bpy.data.objects:
+        if region.get(SOURCE) == name:
+            region[SOURCE] = old.name
+    old.hide_set(True)
 
 
 def add_region(

@@ -20,6 +20,7 @@ from ..request.inputs import RefusalError
 
 PATIENT_MM = "patient_mm"
 CENTRE_MM = "bonemesh_centre_mm"
+LEAST_SCALE = 1e-12  # of a volume: a thousandth of a thousandth along each axis does
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,10 @@ def read(active: Any, depsgraph: Any = None) -> Source:
     """Copies from a mesh object, in Edit Mode or not; with `depsgraph` from what its modifiers make of it."""
     if active.mode == "EDIT":
         active.update_from_editmode()
+    if abs(active.matrix_world.determinant()) < LEAST_SCALE:
+        raise RefusalError(
+            f'"{active.name}" is scaled to nothing; set its Scale to 1 (in the tab Item)'
+        )
     shown = active if depsgraph is None else active.evaluated_get(depsgraph)
     # A mesh in Edit Mode hides its attributes; this momentary copy, which shares their memory, does not.
     mesh = shown.to_mesh(preserve_all_data_layers=True, depsgraph=depsgraph)
@@ -73,8 +78,8 @@ def read(active: Any, depsgraph: Any = None) -> Source:
 
 
 def read_with_selection(active: Any) -> Source:
-    """The same of an object in which something must be selected."""
-    source = read(active)
+    """What a file of the object would hold, but for modifiers, where something must be selected."""
+    source = as_exported(active, None)
     if len(source.selected) == 0:
         raise RefusalError(
             f'no vertex of "{source.name}" is selected; select some in Edit Mode, for example with the lasso'
@@ -97,6 +102,7 @@ def as_exported(active: Any, depsgraph: Any, *, as_placed: bool = False) -> Sour
     if as_placed or is_mirrored or not is_rigid:
         world = vertices.astype(np.float64) @ linear.T + matrix[:3, 3]
         vertices = world.astype(np.float32)
+        source = replace(source, world_from_patient=Matrix.Identity(4))
     if is_mirrored:  # Blender turns the faces of such an object round as it shows it
         faces = np.ascontiguousarray(faces[:, ::-1])
     return replace(source, vertices=vertices, triangles=faces)
@@ -104,7 +110,10 @@ def as_exported(active: Any, depsgraph: Any, *, as_placed: bool = False) -> Sour
 
 def patient_coordinates(placed: Any, mesh: Any) -> tuple[NDArray[np.float32], Matrix]:
     """(N, 3) coordinates, and the matrix that takes them to where the object is in the world."""
-    local = vectors(mesh.attributes["position"])
+    position = mesh.attributes.get("position")
+    if position is None:  # a mesh that never had a vertex
+        return np.empty((0, 3), dtype=np.float32), Matrix.Identity(4)
+    local = vectors(position)
     attribute = mesh.attributes.get(PATIENT_MM)
     if attribute is not None and CENTRE_MM in placed and is_point_vector(attribute):
         centre = np.asarray(placed[CENTRE_MM], dtype=np.float64)

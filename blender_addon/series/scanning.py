@@ -65,6 +65,15 @@ def marked_series(properties: Any) -> bonemesh.Series | None:
     return None if scan is None else scan.chosen(properties.series)
 
 
+def has_failed(properties: Any) -> bool:
+    """Whether the chosen images were looked at and cannot be rendered: none are there, or no series is meant."""
+    request = request_of(properties)
+    scan = None if request is None else scans.known(request)
+    if scan is None or scan.job.is_running():
+        return False
+    return scan.contents is None or scan.chosen(properties.series) is None
+
+
 def stop() -> None:
     """Ends every scan and the timer: neither may outlive the add-on or Blender."""
     if bpy.app.timers.is_registered(_tick):

@@ -105,6 +105,13 @@ def keep(scan: FolderScan) -> None:
         del _scans[request]
 
 
+def forget() -> None:
+    """Forgets what ended scans found: it is looked at again where it is shown."""
+    for request, scan in tuple(_scans.items()):
+        if not scan.job.is_running():
+            del _scans[request]
+
+
 def stop_all(timeout_s: float) -> bool:
     """Cancels and forgets every scan and waits; False when one is still at work after `timeout_s`."""
     stopping = [*_replaced, *_scans.values()]

@@ -57,7 +57,7 @@ def draw() -> None:
     if not context.window_manager.bonemesh_directions:
         return
     view, region = context.region_data, context.region
-    placed = patient.shown_mesh(context)
+    placed = patient.lettered_mesh(context)
     if placed is None or view is None or not context.space_data.overlay.show_overlays:
         return
     scale = context.preferences.system.ui_scale or 1.0

@@ -12,6 +12,7 @@ import numpy as np
 from mathutils import Matrix, Vector
 from numpy.typing import NDArray
 
+from ..preview import scene_preview
 from ..scene.selection import CENTRE_MM, PATIENT_MM, is_point_vector, relative_to
 
 PROBES = 32  # vertices looked at: whoever rewrites coordinates rewrites them all
@@ -83,6 +84,19 @@ def shown_mesh(context: Any) -> Any:
     ours = [o for o in objects if o.type == "MESH" and CENTRE_MM in o]
     seen = (o for o in ours if o.visible_get())
     return next(seen, ours[0] if ours else None)
+
+
+def lettered_mesh(context: Any) -> Any:
+    """The mesh whose directions are known: the active one if it is ours, else another of ours, or the preview.
+
+    Of a mesh from elsewhere, such as the cube that a new scene begins with, nobody said how it lies.
+    """
+    placed = shown_mesh(context)
+    if placed is not None and CENTRE_MM in placed:
+        return placed
+    objects = context.view_layer.objects
+    ours = (o for o in objects if CENTRE_MM in o or scene_preview.TAG in o)
+    return next((o for o in ours if o.type == "MESH" and o.visible_get()), None)
 
 
 def box(placed: Any) -> tuple[NDArray[np.float64], Matrix]:

@@ -12,9 +12,6 @@ from mathutils import Vector
 
 from ..jobs.job import Progress
 
-# From so many diagonals away the usual lens sees all of a box.
-FRAMED_DIAGONALS = 1.3
-
 
 def views(context: Any) -> Iterator[tuple[Any, Any]]:
     """Every 3D view that is open, with its window."""
@@ -50,6 +47,23 @@ def clear_status(context: Any) -> None:
             workspace.status_text_set(None)
 
 
+def clear_status_soon() -> None:
+    """The same once Blender is done with what it is doing, such as closing the window that a job was begun in."""
+    if not bpy.app.background and not bpy.app.timers.is_registered(_clear_status):
+        # Persistent: opening another file must not leave the text there.
+        bpy.app.timers.register(_clear_status, first_interval=0.0, persistent=True)
+
+
+def stop() -> None:
+    """Ends the timer: it may not outlive the add-on or Blender."""
+    if bpy.app.timers.is_registered(_clear_status):
+        bpy.app.timers.unregister(_clear_status)
+
+
+def _clear_status() -> None:
+    clear_status(bpy.context)
+
+
 def frame_selected(context: Any) -> None:
     """Turns every 3D view of the current window to the selected object."""
     for window, area in views(context):
@@ -59,17 +73,6 @@ def frame_selected(context: Any) -> None:
         if region is not None:
             with context.temp_override(window=window, area=area, region=region):
                 bpy.ops.view3d.view_selected()
-
-
-def frame_box(context: Any, lowest: Any, highest: Any) -> None:
-    """Turns every 3D view of the current window to a box of the world, which no object need fill."""
-    middle = (Vector(lowest) + Vector(highest)) / 2.0
-    diagonal = (Vector(highest) - Vector(lowest)).length
-    for window, area in views(context):
-        if window == context.window:
-            region_3d = area.spaces.active.region_3d
-            region_3d.view_location = middle
-            region_3d.view_distance = FRAMED_DIAGONALS * diagonal
 
 
 class CursorProgress:

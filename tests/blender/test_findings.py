@@ -8,6 +8,7 @@ from blender_addon.reports.findings import (
     after_care_lines,
     check_lines,
     of_rendering,
+    verdict,
     volume_text,
 )
 
@@ -103,3 +104,21 @@ def test_what_cannot_be_measured_is_not_told_as_zero() -> None:
         "1 triangle in 1 shell",
         "Walls: not measured, the surface encloses no volume",
     ]
+
+
+@pytest.mark.parametrize(
+    ("report", "said"),
+    [
+        ({"printable": True, "thinnest_wall_mm": 1.2}, "Printable"),
+        ({"printable": True, "thinnest_wall_mm": None}, "Printable"),
+        (
+            {"printable": True, "thinnest_wall_mm": 0.06},
+            "Printable, but for walls below 0.4 mm",
+        ),
+        ({"printable": False, "thinnest_wall_mm": 0.06}, "Not printable"),
+    ],
+)
+def test_the_verdict_names_walls_that_most_printers_cannot_make(
+    report: dict[str, Any], said: str
+) -> None:
+    assert verdict(report) == said

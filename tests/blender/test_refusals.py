@@ -81,6 +81,8 @@ CASES = [
     ("settings of another file", ["other.json", "choose a file such as"]),
     ("settings of another version", ["Method", "newer", "another version"]),
     ("exported as a device", ["con", "reserved by Windows", "another name"]),
+    ("exported with a long name", ["Filename", "too long", "200 letters at most"]),
+    ("a flat mesh", ["scaled to nothing", "Scale"]),
     ("exported where nothing can be written", ["cannot be written to", "another"]),
     ("checked while rendering", ["Render Surface Mesh", "running", "press Cancel"]),
 ]

@@ -80,4 +80,7 @@ def test_a_region_can_be_adjusted(blender: Blender, ct: Path) -> None:
     answer = blender.run("adjust", ct=ct)
     assert answer["options"] == ["REGISTER", "UNDO"]
     # What the operator was given once is not taken again when the button is pressed.
-    assert answer["regions"] == {"region": [2.0, "through"], "second": [3.0, "normal"]}
+    assert answer["regions"] == {"region": [2.5, "through"], "second": [3.0, "normal"]}
+    # What is adjusted takes the place of what was there, in the scene and on the disk.
+    assert answer["adjusted"] == {"region": [2.5, "through"]}
+    assert answer["files"] == ["region.stl"]

@@ -64,11 +64,20 @@ def test_a_selection_is_missed_only_where_blender_counts_it(steps: ModuleType) -
 
 
 def test_the_next_step_leads_from_the_folder_to_the_print(steps: ModuleType) -> None:
-    empty = steps.Scene(has_bone=False, active="", is_edited=False, selected=0)
+    empty = steps.Scene(
+        has_images=True,
+        has_bone=False,
+        active="",
+        is_edited=False,
+        selected=0,
+        is_cut=False,
+    )
     bone = empty._replace(has_bone=True, active="bone")
     edited = bone._replace(is_edited=True)
     said = [
         steps.next_step(fields(ct_directory=""), empty),
+        steps.next_step(fields(mesh_name=""), empty._replace(has_images=False)),
+        steps.next_step(fields(mesh_name=""), empty._replace(active="crop")),
         steps.next_step(fields(mesh_name="", mesh_directory=""), empty),
         steps.next_step(fields(mesh_directory=""), empty),
         steps.next_step(fields(), empty),
@@ -77,10 +86,13 @@ def test_the_next_step_leads_from_the_folder_to_the_print(steps: ModuleType) -> 
         steps.next_step(fields(roi_name=""), edited),
         steps.next_step(fields(roi_name=""), edited._replace(selected=5)),
         steps.next_step(fields(), edited._replace(selected=5)),
+        steps.next_step(fields(), edited._replace(selected=5, is_cut=True)),
         steps.next_step(fields(), bone._replace(active="region")),
     ]
     words = [
         "folder of CT images",
+        "a folder that holds CT images",
+        "Move and scale the box",
         "Mesh Filename",
         "where to save",
         "Render Surface Mesh",
@@ -89,6 +101,7 @@ def test_the_next_step_leads_from_the_folder_to_the_print(steps: ModuleType) -> 
         "Draw around",
         "Segmented Mesh Filename",
         "Select Region of Interest",
+        "Press Tab",
         "Check Mesh",
     ]
     for text, word in zip(said, words, strict=True):

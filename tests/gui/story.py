@@ -152,6 +152,23 @@ def rendering_can_be_cancelled(desk: Desk) -> Steps:
     assert "Stopped; nothing was kept" in desk.messages()
 
 
+def closing_the_window_that_began_a_job_stops_the_job(desk: Desk) -> Steps:
+    manager = bpy.context.window_manager
+    bpy.ops.wm.window_new_main()
+    (second,) = [window for window in manager.windows if window != desk.window]
+    yield from ticks(10)
+    with bpy.context.temp_override(window=second, screen=second.screen):
+        bpy.ops.bonemesh.render_surface_mesh("INVOKE_DEFAULT")
+    yield from wait_until(desk.running, "the rendering begins")
+    with bpy.context.temp_override(window=second):
+        bpy.ops.wm.window_close()
+    yield from desk.until_done(5.0)
+    assert len(manager.windows) == 1
+    assert BONE not in bpy.data.objects
+    yield from ticks(10)
+    yield from desk.picture("the second window was closed")
+
+
 def the_bone_is_rendered_while_the_window_stays_alive(desk: Desk) -> Steps:
     before = yield from desk.picture("before rendering")
     desk.begin_watching()
@@ -315,6 +332,7 @@ STORY = [
     the_histogram_unfolds,
     names_and_a_folder_are_typed,
     rendering_can_be_cancelled,
+    closing_the_window_that_began_a_job_stops_the_job,
     the_bone_is_rendered_while_the_window_stays_alive,
     the_mesh_is_checked,
     a_region_is_selected_with_the_lasso,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
@@ -138,6 +139,38 @@ def test_compressed_slices_are_the_values_that_were_compressed(codec, depth, tmp
         CODECS[codec](data)
         data.save_as(data.filename)
     assert (bonemesh.read_series(tmp_path).hu == pixels).all()
+
+
+IN_ANOTHER_PROGRAM = """
+import ctypes, os, sys
+try:
+    ctypes.CDLL("libopenjp2.so.7", mode=os.RTLD_GLOBAL)
+except OSError:
+    sys.exit(3)
+import bonemesh
+sys.stdout.buffer.write(bonemesh.read_series(sys.argv[1]).hu.tobytes())
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other loaders keep them apart")
+def test_a_program_with_another_jpeg_2000_decoder_keeps_it_to_itself(tmp_path):
+    """As Blender from a distribution: its library has functions of the same names."""
+    depth = Depth(16, 12, is_signed=False)
+    pixels = values(depth, 2)
+    for number, slice_ in enumerate(pixels):
+        data = image(depth)
+        data.ImagePositionPatient = [0, 0, number]
+        data.filename = tmp_path / f"{number}.dcm"
+        put(data, slice_)
+        CODECS["JPEG 2000"](data)
+        data.save_as(data.filename)
+    words = [sys.executable, "-c", IN_ANOTHER_PROGRAM, str(tmp_path)]
+    done = subprocess.run(words, capture_output=True, timeout=60, check=False)
+    if done.returncode == 3:
+        pytest.skip("libopenjp2 is not installed")
+    assert done.returncode == 0, done.stderr.decode()
+    read = np.frombuffer(done.stdout, bonemesh.read_series(tmp_path).hu.dtype)
+    assert (read.reshape(pixels.shape) == pixels).all()
 
 
 @pytest.mark.parametrize("is_signed", [False, True])

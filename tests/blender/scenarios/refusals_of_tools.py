@@ -183,11 +183,15 @@ def names_and_folders() -> dict[str, str]:
     output = bpy.context.scene.bonemesh_output
     output.file_name = "con"
     answers = {"exported as a device": stage.message_of(OPS.export_mesh)}
+    output.file_name = 250 * "ä"
+    answers["exported with a long name"] = stage.message_of(OPS.export_mesh)
     output.file_name = ""
     inputs = import_module(f"{stage.MODULE}.request.inputs")
     real, inputs.os.access = os.access, lambda *_: False  # who tests may be allowed all
     answers["exported where nothing can be written"] = stage.message_of(OPS.export_mesh)
     inputs.os.access = real
+    bpy.context.view_layer.objects.active.scale.x = 0.0
+    answers["a flat mesh"] = stage.message_of(OPS.export_mesh)
     return answers
 
 
