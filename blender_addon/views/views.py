@@ -13,7 +13,10 @@ from .patient import Side
 
 # What a 3D view's lens sees at its distance: twice a sensor of 36 mm.
 SEEN_MM = 72.0
-FILLS = 0.7  # of what is free of the view: letters stand around the bone
+# Of what is free of the view, for letters stand around the bone; a box seen askew has corners far
+# outside of the bone in it.
+FILLS = 0.7
+FILLS_DEEP = 0.9
 
 
 def rotation(placed: Any, side: Side) -> Quaternion:
@@ -71,13 +74,20 @@ def fit(area: Any, places: list[Vector]) -> None:
         Vector([pick(p[axis] for p in seen) for axis in range(3)])
         for pick in (min, max)
     )
-    sides = highest - lowest
-    # Millimetres that a pixel must show, for the tighter of the two sides.
-    mm = max(sides.x / free_px, sides.y / max(region.height, 1)) / FILLS
     middle = (lowest + highest) / 2.0
-    middle.x += mm * (right_px - left_px) / 2.0
+    # What a pixel shows of the plane through the middle, for each millimetre that it is away.
+    mm = SEEN_MM / (space.lens * max(region.width, region.height, 1))
+    halves_px = free_px / 2.0, max(region.height, 1) / 2.0
+    distance = 1.0
+    for place in seen:
+        beside = place - middle
+        needed = max(
+            abs(b) / (mm * px) for b, px in zip(beside.xy, halves_px, strict=True)
+        )
+        if view.view_perspective == "ORTHO":
+            distance = max(distance, needed / FILLS)
+        else:  # what is nearer looks larger
+            distance = max(distance, needed / FILLS_DEEP + beside.z)
+    middle.x += mm * distance * (right_px - left_px) / 2.0
     view.view_location = view.view_rotation @ middle
-    longer_px = max(region.width, region.height)
-    # With perspective what is in front of the middle looks larger: it is looked at from farther off.
-    nearer = sides.z / 2.0 if view.view_perspective == "PERSP" else 0.0
-    view.view_distance = max(mm * longer_px * space.lens / SEEN_MM + nearer, 1.0)
+    view.view_distance = distance
