@@ -42,6 +42,14 @@ def use_box(context: Any) -> str:
     return text
 
 
+def forget(scene: Any) -> None:
+    """Takes the crop and its box away: other images are chosen."""
+    placed = scene_crop.found(scene)
+    if placed is not None:
+        scene_crop.remove(placed)
+    scene.bonemesh.crop = ""
+
+
 def use_moved_box(context: Any) -> None:
     """The same before a rendering, if there is a box that was moved; else the field was set last, and counts."""
     placed = scene_crop.found(context.scene)

@@ -6,6 +6,9 @@ from typing import ClassVar
 from bpy.props import IntProperty, StringProperty
 from bpy.types import Context, Operator, OperatorProperties
 
+from ..crop import cropping
+from ..series import scanning
+
 
 class BONEMESH_OT_choose_series(Operator):
     """Render this series"""
@@ -23,6 +26,10 @@ class BONEMESH_OT_choose_series(Operator):
         return properties.title
 
     def execute(self, context: Context) -> set[str]:
-        """Notes the number as if it were typed."""
-        context.scene.bonemesh.series = str(self.number)
+        """Notes the number as if it were typed; a crop was of another series."""
+        properties = context.scene.bonemesh
+        marked = scanning.marked_series(properties)
+        if marked is None or marked.number != self.number:
+            cropping.forget(context.scene)
+        properties.series = str(self.number)
         return {"FINISHED"}

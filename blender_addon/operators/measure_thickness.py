@@ -23,6 +23,7 @@ class BONEMESH_OT_measure_thickness(OnSelection, BackgroundOperator, Operator):
         """Copies the active object's mesh and selection."""
         context.view_layer.update()
         source = selection.read_with_selection(context.active_object)
+        self._name = source.name
 
         def work(job: Job) -> dict[str, float] | None:
             return bonemesh.local_thickness(
@@ -39,5 +40,5 @@ class BONEMESH_OT_measure_thickness(OnSelection, BackgroundOperator, Operator):
         said = "nothing lies opposite within 40 mm"
         if result is not None:
             said = f"{result['median_mm']:.1f} mm ({result['min_mm']:.1f} to {result['max_mm']:.1f})"
-        context.scene.bonemesh_region.measured = said
+        context.scene.bonemesh_region.measured = f"{self._name}: {said}"
         return f"Thickness of the bone here: {said}"

@@ -5,6 +5,7 @@ from typing import Any, ClassVar
 
 from bpy.types import Context, Operator
 
+from ..request import suggestions
 from .select_roi import RegionOperator
 
 
@@ -15,6 +16,14 @@ class BONEMESH_OT_mirror_roi(RegionOperator, Operator):
     bl_label = "Mirror Region of Interest"
     bl_options: ClassVar[set[str]] = {"UNDO"}
     title = "Mirror Region of Interest"
+
+    def fields(self, context: Context) -> tuple[Any, Any]:
+        """The panel's; where no name is typed, one that says what it is."""
+        fields, region_fields = super().fields(context)
+        if context.scene.bonemesh.roi_name.strip():
+            return fields, region_fields
+        name = suggestions.mirrored_name(context, fields.mesh_directory)
+        return suggestions.Filled(fields, roi_name=name), region_fields
 
     def mirror_options(self, context: Context) -> dict[str, Any]:
         """The plane and where the result goes."""

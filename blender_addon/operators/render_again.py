@@ -19,6 +19,7 @@ from ..series import scanning
 NO_FILE = (
     "no file is chosen; choose one such as bone.stl.json, which was saved beside a mesh"
 )
+OTHER_IMAGES = "{} was made of other images than those in the panel; choose their folder, then press the button again"
 
 
 class RestoresFields:
@@ -32,6 +33,9 @@ class RestoresFields:
         """Sets the panel's fields and says what has none."""
         try:
             name, facts = self.facts(context)
+            uid = facts.get("series_uid")
+            if uid and not scanning.may_hold(context.scene.bonemesh, str(uid)):
+                raise RefusalError(OTHER_IMAGES.format(name))
             fields = provenance.fields(facts)
             restore(context.scene.bonemesh, {"mesh_name": name, **fields})
         except EXPECTED as error:
@@ -43,11 +47,6 @@ class RestoresFields:
             self.say(
                 "WARNING",
                 f"the panel has no field for {', '.join(missing)}; use the command bonemesh render",
-            )
-        if scanning.has_failed(context.scene.bonemesh):
-            self.say(
-                "WARNING",
-                f"{name} was made of other images than those above; choose their folder",
             )
         self.say(
             "INFO", f"The fields are as they were for {name}; press Render Surface Mesh"

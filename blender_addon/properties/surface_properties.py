@@ -12,6 +12,7 @@ from bpy.props import (
 )
 from bpy.types import Context, PropertyGroup
 
+from ..crop import cropping
 from ..preview import previewing
 from ..request import ct_images
 from ..series import scanning
@@ -113,7 +114,7 @@ def ct_images_changed(self: "BonemeshProperties", _context: Context) -> None:
     source = "" if request is None else f"{request.path} {request.one_series}"
     if self.series_source not in ("", source):
         self.series = ""
-        self.crop = ""
+        cropping.forget(self.id_data)
     self.series_source = source
     if scanning.is_watched:
         scanning.begin(self)

@@ -90,7 +90,7 @@ def before_region(properties: Any, seen: Scene) -> str:
     if seen.selected == 0:
         return "Draw around the region with the lasso"
     if seen.is_cut:
-        return "Press Tab with the mouse over the view, to see the region"
+        return "Press F9 with the mouse over the view to adjust the region, then Tab to see it"
     if not properties.roi_name.strip():
         return "Give a Segmented Mesh Filename"
     return "Press Select Region of Interest"

@@ -87,6 +87,13 @@ def free_roi_name(context: Any, folder: str) -> str:
     return free(f"{naming.as_stem(active.name)} region", folder)
 
 
+def mirrored_name(context: Any, folder: str) -> str:
+    """After the mesh whose other side it is; empty for a script, which names what it makes."""
+    if not scanning.is_watched:
+        return ""
+    return free(f"{naming.as_stem(context.active_object.name)} mirrored", folder)
+
+
 def export_name(context: Any, folder: str) -> str:
     """What an exported file is called where no name is typed: after its object and frame, replacing none."""
     output, active = context.scene.bonemesh_output, context.active_object

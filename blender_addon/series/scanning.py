@@ -74,6 +74,14 @@ def has_failed(properties: Any) -> bool:
     return scan.contents is None or scan.chosen(properties.series) is None
 
 
+def may_hold(properties: Any, uid: str) -> bool:
+    """Whether the chosen images may hold the series: False only where they were looked at and do not."""
+    request = request_of(properties)
+    scan = None if request is None else scans.known(request)
+    contents = None if scan is None else scan.contents
+    return contents is None or any(series.uid == uid for series in contents.series)
+
+
 def stop() -> None:
     """Ends every scan and the timer: neither may outlive the add-on or Blender."""
     if bpy.app.timers.is_registered(_tick):

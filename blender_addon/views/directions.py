@@ -24,7 +24,9 @@ SIZE_POINTS = 18.0
 COLOUR = (1.0, 0.82, 0.25, 1.0)
 SHADOW = (0.0, 0.0, 0.0, 0.9)
 BESIDE = 0.12  # of the box's mean side: how far outside of it the letters stand
-HEAD_ON = 0.95  # cosine: a letter right before or behind the bone would stand on it
+# Cosines between a letter's direction and the look. One right before the bone would cover it; one behind
+# it would be read on the side that is seen, which is the other one.
+BEFORE, BEHIND = -0.95, 0.2
 
 _handle: Any = None
 
@@ -47,7 +49,7 @@ def seen_letters(placed: Any, looks: Vector) -> dict[str, Vector]:
     return {
         letter: place
         for letter, place in places(placed).items()
-        if abs((turn @ Vector(LETTERS[letter])).dot(looks)) < HEAD_ON
+        if BEFORE < (turn @ Vector(LETTERS[letter])).dot(looks) < BEHIND
     }
 
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from ..preview import scene_preview
 from ..scene.selection import CENTRE_MM, PATIENT_MM, is_point_vector, relative_to
 
+SOURCE = "bonemesh_source"  # of a region: the bone that it was cut from
 PROBES = 32  # vertices looked at: whoever rewrites coordinates rewrites them all
 
 
@@ -92,9 +93,11 @@ def lettered_mesh(context: Any) -> Any:
     Of a mesh from elsewhere, such as the cube that a new scene begins with, nobody said how it lies.
     """
     placed = shown_mesh(context)
-    if placed is not None and CENTRE_MM in placed:
-        return placed
     objects = context.view_layer.objects
+    if placed is not None and CENTRE_MM in placed:
+        # Around a region they would stand in the middle of its bone.
+        bone = objects.get(placed.get(SOURCE, ""))
+        return bone if bone is not None and bone.visible_get() else placed
     ours = (o for o in objects if CENTRE_MM in o or scene_preview.TAG in o)
     return next((o for o in ours if o.type == "MESH" and o.visible_get()), None)
 

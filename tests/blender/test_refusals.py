@@ -76,6 +76,7 @@ CASES = [
     ("compared and changed", ["three", "changed meanwhile", "press the button"]),
     ("faults of a changed mesh", ["one", "changed meanwhile", "press the button"]),
     ("plane through a line", ["in a line", "select three that do not"]),
+    ("settings of other images", ["elsewhere", "other images", "choose their folder"]),
     ("settings of no file", ["no file is chosen", "bone.stl.json"]),
     ("settings of a folder", ["no file is chosen", "bone.stl.json"]),
     ("settings of another file", ["other.json", "choose a file such as"]),

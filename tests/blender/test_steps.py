@@ -101,7 +101,7 @@ def test_the_next_step_leads_from_the_folder_to_the_print(steps: ModuleType) -> 
         "Draw around",
         "Segmented Mesh Filename",
         "Select Region of Interest",
-        "Press Tab",
+        "F9",
         "Check Mesh",
     ]
     for text, word in zip(said, words, strict=True):

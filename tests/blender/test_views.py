@@ -98,10 +98,10 @@ def test_letters_stand_outside_of_the_bone_on_their_side(
     np.testing.assert_allclose(moved / np.linalg.norm(moved), direction, atol=1e-4)
 
 
-def test_letters_right_before_and_behind_the_bone_are_left_out(
+def test_letters_that_would_be_read_on_the_wrong_side_are_left_out(
     run: dict[str, Any],
 ) -> None:
-    assert run["hidden"] == {"front": "AP", "aslant": ""}
+    assert run["hidden"] == {"front": "AP", "aslant": "LPS"}
 
 
 def test_there_is_nothing_to_look_at_without_a_mesh(run: dict[str, Any]) -> None:

@@ -164,7 +164,10 @@ def settings_from_file(folder: Path) -> dict[str, str]:
     other.write_text("[]")
     newer = folder / "newer.stl.json"
     newer.write_text(json.dumps({"options": {"method": "newer"}}))
+    elsewhere = folder / "elsewhere.stl.json"
+    elsewhere.write_text(json.dumps({"options": {}, "series_uid": "1.2.3"}))
     paths = {
+        "settings of other images": str(elsewhere),
         "settings of no file": "",
         "settings of a folder": str(folder),
         "settings of another file": str(other),
