@@ -45,7 +45,7 @@ def use_box(context: Any) -> str:
 def forget(scene: Any) -> None:
     """Takes the crop and its box away: other images are chosen."""
     placed = scene_crop.found(scene)
-    if placed is not None:
+    if placed is not None and placed.mode == "OBJECT":
         scene_crop.remove(placed)
     scene.bonemesh.crop = ""
 

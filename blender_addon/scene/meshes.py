@@ -83,7 +83,7 @@ def add_bone(
 
 
 def retire(context: Any, name: str) -> None:
-    """Hides the bone of that name, whose file was just replaced, under another; its regions go on knowing it."""
+    """Hides a bone of that name, which is made anew, under another name; its regions go on knowing it."""
     old = context.view_layer.objects.get(name)
     is_bone = old is not None and f"bonemesh_{OPTIONS}" in old and SOURCE not in old
     if not is_bone or old.mode == "EDIT" or old.library is not None:

@@ -13,9 +13,9 @@ from mathutils import Matrix, Vector
 from numpy.typing import NDArray
 
 from ..preview import scene_preview
+from ..scene.meshes import SOURCE
 from ..scene.selection import CENTRE_MM, PATIENT_MM, is_point_vector, relative_to
 
-SOURCE = "bonemesh_source"  # of a region: the bone that it was cut from
 PROBES = 32  # vertices looked at: whoever rewrites coordinates rewrites them all
 
 
