@@ -8,6 +8,7 @@ import bpy
 from bpy.types import Context, Operator
 
 from ..jobs.job import Job
+from ..reports import provenance
 from ..request import suggestions
 from ..request.inputs import ExportInputs
 from ..scene import selection
@@ -48,8 +49,7 @@ class BONEMESH_OT_export_mesh(OnMesh, BackgroundOperator, Operator):
                 progress=job.note_progress,
                 cancel=job.cancel_token,
             )
-            # It would tell of the mesh whose file was just replaced.
-            Path(f"{inputs.output}.json").unlink(missing_ok=True)
+            provenance.remove_sidecar(inputs.output)
             return inputs.output
 
         self._triangles = len(source.triangles)

@@ -43,6 +43,18 @@ def read_sidecar(path: Path) -> Facts:
     return facts
 
 
+def remove_sidecar(mesh: Path) -> None:
+    """Takes away what tells of the mesh that a file held before; any other file of that name stays."""
+    path = Path(f"{mesh}.json")
+    try:
+        with path.open(encoding="utf-8") as file:
+            facts = json.loads(file.read(MOST_BYTES))
+        if isinstance(facts, dict) and facts.get("file") == mesh.name:
+            path.unlink()
+    except (OSError, ValueError):
+        return  # there is none, or it is somebody else's
+
+
 def fields(facts: Facts) -> dict[str, Any]:
     """The fields of `scene.bonemesh`, by name, as they were for this rendering."""
     options = facts["options"]

@@ -125,19 +125,24 @@ def put(data: Dataset, pixels: np.ndarray) -> None:
     data["PixelData"].VR = "OB" if data.BitsAllocated == 8 else "OW"
 
 
+def write(folder: Path, pixels: np.ndarray, depth: Depth, codec: str) -> None:
+    """A series of one file for each slice."""
+    for number, slice_ in enumerate(pixels):
+        data = image(depth)
+        data.ImagePositionPatient = [0, 0, number]
+        data.filename = folder / f"{number}.dcm"
+        put(data, slice_)
+        CODECS[codec](data)
+        data.save_as(data.filename)
+
+
 @pytest.mark.parametrize("depth", DEPTHS, ids=str)
 @pytest.mark.parametrize("codec", CODECS)
 def test_compressed_slices_are_the_values_that_were_compressed(codec, depth, tmp_path):
     if codec == "RLE" and depth.stored == 8 < depth.allocated:
         pytest.skip("pydicom compresses these cells as if they were of 8 bits")
     pixels = values(depth, 2)
-    for number, slice_ in enumerate(pixels):
-        data = image(depth)
-        data.ImagePositionPatient = [0, 0, number]
-        data.filename = tmp_path / f"{number}.dcm"
-        put(data, slice_)
-        CODECS[codec](data)
-        data.save_as(data.filename)
+    write(tmp_path, pixels, depth, codec)
     assert (bonemesh.read_series(tmp_path).hu == pixels).all()
 
 
@@ -157,13 +162,7 @@ def test_a_program_with_another_jpeg_2000_decoder_keeps_it_to_itself(tmp_path):
     """As Blender from a distribution: its library has functions of the same names."""
     depth = Depth(16, 12, is_signed=False)
     pixels = values(depth, 2)
-    for number, slice_ in enumerate(pixels):
-        data = image(depth)
-        data.ImagePositionPatient = [0, 0, number]
-        data.filename = tmp_path / f"{number}.dcm"
-        put(data, slice_)
-        CODECS["JPEG 2000"](data)
-        data.save_as(data.filename)
+    write(tmp_path, pixels, depth, "JPEG 2000")
     words = [sys.executable, "-c", IN_ANOTHER_PROGRAM, str(tmp_path)]
     done = subprocess.run(words, capture_output=True, timeout=60, check=False)
     if done.returncode == 3:
